@@ -1,0 +1,1336 @@
+/* lahar.h: the host interface of lahar, a material point method engine.
+ *
+ * Generated from src/ffi by `cargo xtask headers`; do not edit.
+ *
+ * Statuses. Functions return a lahar_status: 0 done; positive: refused, nothing has changed; negative: the object is
+ * poisoned, it answers queries and can be freed. lahar_last_error_message tells what was expected, what was received and
+ * what to do. Nothing prints, exits or aborts.
+ *
+ * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. `create` sets its output to NULL first,
+ * and to the object only if it succeeds. `free` ignores NULL; freeing in any order is safe, children keep their parents
+ * alive. A handle must not be used after it was freed. Bodies and walls are int64_t ids, never used again.
+ *
+ * Pointers must not be NULL unless it is said. Arrays of the host are read or written during the call only. Texts are
+ * NUL-terminated UTF-8. Texts that lahar returns by pointer are static: they live as long as the process.
+ *
+ * Structs begin with `struct_size`, their sizeof, so that they can grow at the end. Structs with an init function are
+ * filled by it; in the others, which lahar fills, the host sets `struct_size` and lahar zeroes what it does not know.
+ *
+ * Units are SI in this text; any consistent ones may be used. Tension is positive. Symmetric tensors have the components
+ * xx, yy, zz, xy, yz, zx, in two dimensions too.
+ *
+ * Threads. Each function has a tag.
+ *   Thread: any          from any thread at any time, and from callbacks
+ *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another thread changes the
+ *                        object
+ *   Thread: owner        changes or frees the object: by one thread at a time (another gets LAHAR_ERROR_BUSY, except from
+ *                        a free, before which the host must have ended all other use), not from callbacks
+ *
+ * Floating point. Every function saves the host's environment (rounding, traps), works in the default one, and restores
+ * the host's; callbacks run in the host's.
+ */
+
+#ifndef LAHAR_H
+#define LAHAR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- status ------------------------------------------------------------------------------------
+ *
+ * Statuses: what every function answers.
+ */
+
+// Done.
+#define LAHAR_OK 0
+
+// A pointer that must not be NULL is NULL.
+#define LAHAR_ERROR_NULL_ARGUMENT 1
+
+// `struct_size` is not one that this library knows, or the unknown tail is not zero.
+#define LAHAR_ERROR_STRUCT_SIZE 2
+
+// A value is not finite, of the wrong sign, or not one of those allowed.
+#define LAHAR_ERROR_INVALID_ARGUMENT 3
+
+// No model, parameter or field has this name; the message tells the closest one.
+#define LAHAR_ERROR_UNKNOWN_NAME 4
+
+// A required parameter of a model is missing.
+#define LAHAR_ERROR_MISSING_PARAMETER 5
+
+// A parameter lies outside its hard bounds, or the model refuses the combination.
+#define LAHAR_ERROR_OUT_OF_BOUNDS 6
+
+// No body, wall or plugin has this id.
+#define LAHAR_ERROR_NOT_FOUND 7
+
+// A view is open that forbids the call.
+#define LAHAR_ERROR_VIEW_OPEN 8
+
+// The view's data belong to an earlier step.
+#define LAHAR_ERROR_VIEW_STALE 9
+
+// Another thread is using the object.
+#define LAHAR_ERROR_BUSY 10
+
+// The field can be read but not written.
+#define LAHAR_ERROR_READ_ONLY 11
+
+// This combination of options is not supported; the message tells the nearest that is.
+#define LAHAR_ERROR_UNSUPPORTED 12
+
+// An array is shorter than the result; the needed size is given.
+#define LAHAR_ERROR_BUFFER_TOO_SMALL 13
+
+// The time step exceeds the stable one; nothing was done.
+#define LAHAR_ERROR_STEP_TOO_LARGE 100
+
+// The host left a value in a particle field that is not finite; nothing was done.
+#define LAHAR_ERROR_NON_FINITE_INPUT 101
+
+// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
+#define LAHAR_ERROR_OUTSIDE_GRID 102
+
+// A file could not be read or written.
+#define LAHAR_ERROR_FILE 200
+
+// The plugin file is missing.
+#define LAHAR_ERROR_PLUGIN_NOT_FOUND 201
+
+// The file is not a plugin, or its tables break the rules.
+#define LAHAR_ERROR_PLUGIN_INVALID 202
+
+// The plugin speaks another major version of the plugin ABI.
+#define LAHAR_ERROR_PLUGIN_ABI 203
+
+// The plugin refused to load.
+#define LAHAR_ERROR_PLUGIN_REFUSED 204
+
+// Threads could not be started, or the process was forked after they were.
+#define LAHAR_ERROR_THREADS 205
+
+// A defect of lahar was caught; the object is poisoned.
+#define LAHAR_ERROR_PANIC -1
+
+// A material failed at a point in the middle of a step; the world is poisoned.
+#define LAHAR_ERROR_MATERIAL_FAILED -2
+
+// A particle's state became infinite or not a number in a step; the world is poisoned.
+#define LAHAR_ERROR_NON_FINITE -3
+
+// The object was poisoned by an earlier call; it can only be queried and freed.
+#define LAHAR_ERROR_POISONED -4
+
+// What a function answers: 0 done; positive: refused, nothing has changed; negative: the object is poisoned, it
+// answers queries and can be freed. 1 to 99: a mistake of the caller; 100 to 199: numerics; 200 to 299: files,
+// plugins and threads.
+typedef int32_t lahar_status;
+
+// Name of a status, such as "LAHAR_ERROR_BUSY"; "unknown status" if there is none of this number.
+// The text is static: do not free it. Cannot fail.
+// Thread: any
+const char *lahar_status_name(lahar_status status);
+
+/* ---- version -----------------------------------------------------------------------------------
+ *
+ * Version of the library: constants of the header and their run-time twins.
+ */
+
+// Major version of this header.
+#define LAHAR_VERSION_MAJOR 0
+
+// Minor version of this header.
+#define LAHAR_VERSION_MINOR 1
+
+// Patch version of this header.
+#define LAHAR_VERSION_PATCH 0
+
+// Number of the binary interface of this header. A library is usable if `lahar_abi_version()` answers the same.
+#define LAHAR_ABI_VERSION 1
+
+// Version of the library that is running.
+//
+// `major`, `minor`, `patch`: written; must not be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+// Thread: any
+lahar_status lahar_version(int32_t *major, int32_t *minor, int32_t *patch);
+
+// Number of the binary interface of the library that is running; compare with LAHAR_ABI_VERSION. Cannot fail.
+// Thread: any
+int32_t lahar_abi_version(void);
+
+/* ---- context -----------------------------------------------------------------------------------
+ *
+ * Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
+ */
+
+// Log level: something failed.
+#define LAHAR_LOG_ERROR 0
+
+// Log level: something is unusual, such as a parameter outside its advised bounds.
+#define LAHAR_LOG_WARNING 1
+
+// Log level: milestones, such as a loaded plugin.
+#define LAHAR_LOG_INFORMATION 2
+
+// Log level: details for finding a fault.
+#define LAHAR_LOG_DETAIL 3
+
+// Threads, log and loaded plugins. Freed by lahar_context_free; worlds, materials and views keep it alive.
+typedef struct lahar_context lahar_context;
+
+// Receives a line of the log: a LAHAR_LOG_ level, a text in UTF-8 without a newline that is valid during the call, and
+// the pointer given to lahar_context_set_log. Called on the thread that called lahar, in the host's floating-point
+// environment, with no lock held, just before the function returns. It may call functions tagged `callback-ok` or
+// `any`. It must not unwind, throw or longjmp.
+typedef void (*lahar_log_callback)(int32_t level, const char *message, void *user);
+
+// A loaded plugin. The texts are static: they live as long as the process.
+typedef struct lahar_plugin_info {
+    // sizeof(lahar_plugin_info); set by the host.
+    uint32_t struct_size;
+    // 0.
+    int32_t reserved;
+    // Number of models.
+    int64_t model_count;
+    // Identifier, such as "org.lahar.linear_elastic".
+    const char *id;
+    // Version of the plugin.
+    const char *version;
+    // Who wrote it.
+    const char *author;
+    // Licence, an SPDX expression.
+    const char *licence;
+    // Where to find it; may be empty.
+    const char *url;
+    // The file that was loaded.
+    const char *path;
+} lahar_plugin_info;
+
+// Makes a context.
+//
+// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
+// set. With more than 1 the context starts that many threads of its own; they end with it.
+// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or the variable), LAHAR_ERROR_THREADS.
+// Thread: any
+lahar_status lahar_context_create(int32_t threads,
+                                  lahar_context **context);
+
+// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and views are freed too.
+// NULL is ignored.
+// Thread: owner
+void lahar_context_free(lahar_context *context);
+
+// Number of threads of the context.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+// Thread: any
+lahar_status lahar_context_thread_count(const lahar_context *context, int32_t *threads);
+
+// Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+// Thread: any
+lahar_status lahar_context_threads_used(const lahar_context *context,
+                                        int32_t *threads);
+
+// Sets where log lines go. Without this call lahar is silent.
+//
+// `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
+// `user`: handed to the callback on every thread that calls functions of this context; lahar does not follow it.
+// `max_level`: the most detailed level that is wanted, one of LAHAR_LOG_*.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
+// Thread: any
+lahar_status lahar_context_set_log(lahar_context *context,
+                                   lahar_log_callback callback,
+                                   void *user,
+                                   int32_t max_level);
+
+// A ready log callback: writes one line to standard error. `user` is not used.
+// Thread: any
+void lahar_log_stderr(int32_t level, const char *message, void *user);
+
+// Loads a plugin into the context; a plugin that is loaded already is found again. It stays in memory until the
+// process ends.
+//
+// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
+// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':'.
+// `plugin`: gets its index in the context; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
+// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
+// Thread: any
+lahar_status lahar_context_load_plugin(lahar_context *context,
+                                       const char *name_or_path,
+                                       int64_t *plugin);
+
+// Number of plugins that are loaded into the context.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+// Thread: any
+lahar_status lahar_context_plugin_count(const lahar_context *context, int64_t *plugins);
+
+// Describes a plugin.
+//
+// `plugin`: 0 to lahar_context_plugin_count - 1.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
+// Thread: any
+lahar_status lahar_context_plugin_info(const lahar_context *context,
+                                       int64_t plugin,
+                                       lahar_plugin_info *info);
+
+/* ---- error -------------------------------------------------------------------------------------
+ *
+ * The last error: a text for people and a struct for programs. A failed call keeps its error for the calling thread
+ * and for the context; a call that succeeds does not clear it.
+ */
+
+// Where and why a call failed, for programs.
+typedef struct lahar_error_info {
+    // sizeof(lahar_error_info); set by the host.
+    uint32_t struct_size;
+    // The status that the call returned; LAHAR_OK if no call of this thread has failed yet.
+    lahar_status code;
+    // Id of the body; -1 if unknown.
+    int64_t body;
+    // Id of the particle inside its body, counted from 0 in the order of insertion; -1 if unknown.
+    int64_t particle;
+    // Number of committed steps before the one that failed; -1 if unknown.
+    int64_t step;
+    // Time at the start of the step that failed [s]; 0 if unknown.
+    double time;
+    // Time step that would be accepted [s]; 0 if unknown.
+    double suggested_dt;
+} lahar_error_info;
+
+// Text of the last error of the calling thread: which function, what was expected, what was received, what to do.
+//
+// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0, to ask for the size.
+// `needed`: gets the size of the text with its NUL; may be NULL.
+// Errors: LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated), LAHAR_ERROR_NULL_ARGUMENT,
+// LAHAR_ERROR_INVALID_ARGUMENT (negative capacity). None of them changes the last error.
+// Thread: any
+lahar_status lahar_last_error_message(char *buffer,
+                                      int64_t capacity,
+                                      int64_t *needed);
+
+// The last error of the calling thread, for programs.
+//
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE. None of them changes the last error.
+// Thread: any
+lahar_status lahar_last_error_info(lahar_error_info *info);
+
+// Text of the last error of any call on this context, its worlds, materials and views, from any thread.
+//
+// `buffer`, `capacity`, `needed`, errors: as in lahar_last_error_message.
+// Thread: any
+lahar_status lahar_context_error_message(const lahar_context *context,
+                                         char *buffer,
+                                         int64_t capacity,
+                                         int64_t *needed);
+
+/* ---- model -------------------------------------------------------------------------------------
+ *
+ * Models: what the loaded plugins offer. Numbers such as `kinematics` are the constants of lahar_plugin.h.
+ */
+
+// A constitutive model. The texts are static.
+typedef struct lahar_model_info {
+    // sizeof(lahar_model_info); set by the host.
+    uint32_t struct_size;
+    // What the model takes: one of LAHAR_KINEMATICS_* of lahar_plugin.h.
+    int32_t kinematics;
+    // Name, for lahar_material_create.
+    const char *name;
+    // One sentence.
+    const char *summary;
+    // Where the model is published.
+    const char *reference;
+    // Index of the plugin that it comes from.
+    int64_t plugin;
+    // Number of parameters.
+    int64_t parameter_count;
+    // Number of state variables.
+    int64_t state_count;
+    // Sum of LAHAR_OUTPUT_* of lahar_plugin.h.
+    uint64_t outputs;
+    // Sum of LAHAR_CAPABILITY_* of lahar_plugin.h.
+    uint64_t capabilities;
+} lahar_model_info;
+
+// A parameter of a model. The texts are static.
+typedef struct lahar_parameter_info {
+    // sizeof(lahar_parameter_info); set by the host.
+    uint32_t struct_size;
+    // One of LAHAR_PARAMETER_* of lahar_plugin.h: a real, a whole number, or a choice given by its position 0, 1, ...
+    int32_t kind;
+    // 1: must be given; 0: `default_value` is used.
+    int32_t required;
+    // 0.
+    int32_t reserved;
+    // Name, for lahar_material_create.
+    const char *name;
+    // Symbol of the literature.
+    const char *symbol;
+    // SI unit.
+    const char *unit;
+    // One sentence.
+    const char *description;
+    // Labels of a choice, separated by '|'; empty for other kinds.
+    const char *choices;
+    // Value if none is given.
+    double default_value;
+    // Smallest accepted value; -infinity for none.
+    double hard_min;
+    // Largest accepted value; infinity for none.
+    double hard_max;
+    // Below this a warning is logged; -infinity for none.
+    double advised_min;
+    // Above this a warning is logged; infinity for none.
+    double advised_max;
+} lahar_parameter_info;
+
+// A state variable of a model; it is a field of every body of such a material, by this name. The texts are static.
+typedef struct lahar_state_info {
+    // sizeof(lahar_state_info); set by the host.
+    uint32_t struct_size;
+    // One of LAHAR_STATE_* of lahar_plugin.h.
+    int32_t kind;
+    // Number of components: 1, 3, 6 or 9.
+    int32_t components;
+    // One of LAHAR_ROTATION_* of lahar_plugin.h.
+    int32_t rotation;
+    // Name of the field.
+    const char *name;
+    // SI unit.
+    const char *unit;
+    // One sentence.
+    const char *description;
+    // Initial value of each component, before the model derives the first state.
+    double initial;
+} lahar_state_info;
+
+// Number of models of all loaded plugins.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+// Thread: any
+lahar_status lahar_context_model_count(const lahar_context *context, int64_t *models);
+
+// Describes a model.
+//
+// `model`: 0 to lahar_context_model_count - 1, in the order of loading.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
+// Thread: any
+lahar_status lahar_context_model_info(const lahar_context *context,
+                                      int64_t model,
+                                      lahar_model_info *info);
+
+// Index of the model of this name.
+//
+// `name`: NUL-terminated, UTF-8.
+// `model`: gets the index.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+// Thread: any
+lahar_status lahar_context_find_model(const lahar_context *context, const char *name, int64_t *model);
+
+// Describes a parameter of a model.
+//
+// `model`: index of the model. `parameter`: 0 to `parameter_count` - 1 of lahar_model_info.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+// Thread: any
+lahar_status lahar_context_model_parameter(const lahar_context *context,
+                                           int64_t model,
+                                           int64_t parameter,
+                                           lahar_parameter_info *info);
+
+// Describes a state variable of a model.
+//
+// `model`: index of the model. `state`: 0 to `state_count` - 1 of lahar_model_info.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+// Thread: any
+lahar_status lahar_context_model_state(const lahar_context *context,
+                                       int64_t model,
+                                       int64_t state,
+                                       lahar_state_info *info);
+
+/* ---- material ----------------------------------------------------------------------------------
+ *
+ * Materials: a model with values of its parameters. A material may be used by many bodies and worlds.
+ */
+
+// A model with values of its parameters. Freed by lahar_material_free; bodies keep what they need.
+typedef struct lahar_material lahar_material;
+
+// Makes a material from named values. Parameters that are not named have their defaults.
+//
+// `model`: name of a model of a loaded plugin.
+// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of the model's description;
+// NULL is allowed if `count` is 0.
+// `material`: set to the new handle, or to NULL on failure; the host frees it with lahar_material_free.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message tells the closest),
+// LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS, LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
+// Thread: any
+lahar_status lahar_material_create(lahar_context *context,
+                                   const char *model,
+                                   int64_t count,
+                                   const char *const *names,
+                                   const double *values,
+                                   lahar_material **material);
+
+// Frees the handle; bodies made of the material go on. NULL is ignored.
+// Thread: owner
+void lahar_material_free(lahar_material *material);
+
+// Value of a parameter, given or default, in the unit of its description.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+// Thread: any
+lahar_status lahar_material_value(const lahar_material *material,
+                                  const char *parameter,
+                                  double *value);
+
+/* ---- world -------------------------------------------------------------------------------------
+ *
+ * Worlds: a background grid with its bodies and walls, and time.
+ *
+ * Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a result. Any consistent
+ * units may be used; those named are SI. In two dimensions a world is plane strain and 1 m thick.
+ */
+
+// Shape functions: linear.
+#define LAHAR_SHAPE_LINEAR 0
+
+// Shape functions: quadratic B-splines (default).
+#define LAHAR_SHAPE_QUADRATIC_BSPLINE 1
+
+// Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
+#define LAHAR_TRANSFER_PIC_FLIP 0
+
+// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
+#define LAHAR_TRANSFER_APIC 1
+
+// Order of a step: stresses before the grid moves.
+#define LAHAR_ORDER_USL 0
+
+// Order of a step: stresses last, from the velocities of the moved particles mapped again (default).
+#define LAHAR_ORDER_MUSL 1
+
+// Grid: blocks come and go with the particles (default).
+#define LAHAR_GRID_DYNAMIC 0
+
+// Grid: blocks come with the particles and stay.
+#define LAHAR_GRID_GROW_ONLY 1
+
+// Grid: the blocks of a fixed box; a particle that leaves it is an error.
+#define LAHAR_GRID_STATIC 2
+
+// A background grid with its bodies and walls. Freed by lahar_world_free; views keep it alive.
+typedef struct lahar_world lahar_world;
+
+// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what else is wanted.
+typedef struct lahar_world_options {
+    // sizeof(lahar_world_options); set by lahar_world_options_init.
+    uint32_t struct_size;
+    // 2 (plane strain) or 3; default 3.
+    int32_t dimension;
+    // One of LAHAR_SHAPE_*.
+    int32_t shape;
+    // One of LAHAR_TRANSFER_*.
+    int32_t transfer;
+    // One of LAHAR_ORDER_*.
+    int32_t order;
+    // One of LAHAR_GRID_*.
+    int32_t grid_policy;
+    // Distance of the grid's nodes [m], > 0; has no default.
+    double spacing;
+    // Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
+    double origin[3];
+    // Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default), infinity is PIC.
+    double pic_rate;
+    // Courant number of the stable time step [-], in (0, 1]; default 0.4.
+    double cfl;
+    // Gravity [m/s^2], shape [3]; default 0.
+    double gravity[3];
+    // Local non-viscous damping [-], in [0, 1); default 0.
+    double damping;
+    // Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    double box_min[3];
+    // Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    double box_max[3];
+} lahar_world_options;
+
+// Fills the options with their defaults.
+//
+// `size`: sizeof(lahar_world_options).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_world_options_init(lahar_world_options *options, int64_t size);
+
+// Makes an empty world at time 0.
+//
+// `options`: copied.
+// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+// LAHAR_ERROR_UNSUPPORTED (the combination; the message tells the nearest that is supported).
+// Thread: any
+lahar_status lahar_world_create(lahar_context *context,
+                                const lahar_world_options *options,
+                                lahar_world **world);
+
+// Frees the handle. The memory goes when the last view is freed too. NULL is ignored.
+// Thread: owner
+void lahar_world_free(lahar_world *world);
+
+// Sets gravity from the next step on.
+//
+// `gravity`: [m/s^2], shape [3], finite.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_world_set_gravity(lahar_world *world, const double gravity[3]);
+
+// Sets the local non-viscous damping from the next step on.
+//
+// `damping`: [-], in [0, 1).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_world_set_damping(lahar_world *world, double damping);
+
+// One step of the given length.
+//
+// `dt`: [s], > 0 and not above lahar_world_stable_dt.
+// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt), LAHAR_ERROR_STEP_TOO_LARGE (the
+// stable step is in `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote),
+// LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
+// lahar_last_error_info tells the body, the particle, the step and the time.
+// Thread: owner
+lahar_status lahar_world_step(lahar_world *world,
+                              double dt);
+
+// One step of the stable length.
+//
+// `dt`: gets the length of the step [s]; may be NULL.
+// Errors: as lahar_world_step.
+// Thread: owner
+lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
+
+// Steps of the stable length until a time is reached; the last two are shortened to hit it exactly.
+//
+// `until`: time to reach [s], not before the present one.
+// `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
+// `steps_done`: gets the number of committed steps, on failure too; may be NULL.
+// `time`: gets the time that was reached [s], on failure too; may be NULL.
+// Errors: as lahar_world_step; a positive status means that no partial step was committed.
+// Thread: owner
+lahar_status lahar_world_advance(lahar_world *world,
+                                 double until,
+                                 int64_t max_steps,
+                                 int64_t *steps_done,
+                                 double *time);
+
+// Longest step that is stable now [s]: infinity without particles.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_stable_dt(const lahar_world *world, double *dt);
+
+// Time of the world [s].
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_time(const lahar_world *world, double *time);
+
+// Number of committed steps.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_step_count(const lahar_world *world, int64_t *steps);
+
+// Length of the last committed step [s]; 0 before the first.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_last_dt(const lahar_world *world, double *dt);
+
+/* ---- body --------------------------------------------------------------------------------------
+ *
+ * Bodies: particles of one material. They are made from the host's arrays or from shapes, and named by ids that are
+ * counted from 0 and never used again.
+ */
+
+// An array of the host with any layout: component c of point k stands at data[c * component_stride + k * point_stride].
+typedef struct lahar_array {
+    // First value; NULL: not given. Read during the call only.
+    const double *data;
+    // Distance of two components of a point, in doubles. Both strides 0: interleaved, point after point.
+    int64_t component_stride;
+    // Distance of two points, in doubles.
+    int64_t point_stride;
+} lahar_array;
+
+// Particles from the host's arrays. Fill it with lahar_particles_init, then set `count`, `position`, `volume`, and either
+// `mass` or `density`.
+typedef struct lahar_particles {
+    // sizeof(lahar_particles); set by lahar_particles_init.
+    uint32_t struct_size;
+    // Must be 0.
+    int32_t reserved;
+    // Number of particles.
+    int64_t count;
+    // Positions [m], shape [count, dimension].
+    lahar_array position;
+    // Volumes [m^3], shape [count], > 0; in two dimensions areas times 1 m.
+    lahar_array volume;
+    // Masses [kg], shape [count], > 0; not given: `density` times volume.
+    lahar_array mass;
+    // Velocities [m/s], shape [count, dimension]; not given: 0.
+    lahar_array velocity;
+    // Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given: 0.
+    lahar_array stress;
+    // Mass density [kg/m^3], > 0; used if `mass` is not given.
+    double density;
+} lahar_particles;
+
+// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or `mass`.
+typedef struct lahar_fill {
+    // sizeof(lahar_fill); set by lahar_fill_init.
+    uint32_t struct_size;
+    // Particles per cell of the grid along each axis, >= 1; default 2.
+    int32_t particles_per_cell;
+    // Mass density [kg/m^3], > 0; 0: not given.
+    double density;
+    // Mass of the whole body [kg], > 0; 0: not given.
+    double mass;
+    // Velocity of all particles [m/s], shape [3]; default 0.
+    double velocity[3];
+    // Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6]; default 0.
+    double stress[6];
+} lahar_fill;
+
+// Fills the struct with its defaults: no particles, no arrays.
+//
+// `size`: sizeof(lahar_particles).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_particles_init(lahar_particles *particles, int64_t size);
+
+// Fills the struct with its defaults.
+//
+// `size`: sizeof(lahar_fill).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_fill_init(lahar_fill *fill, int64_t size);
+
+// Adds a body from the host's arrays.
+//
+// `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
+// `body`: gets the id of the new body; must not be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive,
+// strides), LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_add_particles(lahar_world *world,
+                                      const lahar_material *material,
+                                      const lahar_particles *particles,
+                                      int64_t *body);
+
+// Adds a body that fills a box.
+//
+// `min`, `max`: corners [m], shape [3]. Particles stand on a regular lattice, `particles_per_cell` along each axis.
+// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// Errors: as lahar_body_add_particles.
+// Thread: owner
+lahar_status lahar_body_add_box(lahar_world *world,
+                                const lahar_material *material,
+                                const double min[3],
+                                const double max[3],
+                                const lahar_fill *fill,
+                                int64_t *body);
+
+// Adds a body that fills a sphere, or a disc in two dimensions.
+//
+// `center`: [m], shape [3]. `radius`: [m], > 0.
+// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// Errors: as lahar_body_add_particles.
+// Thread: owner
+lahar_status lahar_body_add_sphere(lahar_world *world,
+                                   const lahar_material *material,
+                                   const double center[3],
+                                   double radius,
+                                   const lahar_fill *fill,
+                                   int64_t *body);
+
+// Adds a body that fills a simple polygon; two dimensions only.
+//
+// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
+// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
+// Thread: owner
+lahar_status lahar_body_add_polygon(lahar_world *world,
+                                    const lahar_material *material,
+                                    int64_t count,
+                                    const double *vertices,
+                                    const lahar_fill *fill,
+                                    int64_t *body);
+
+// Removes a body. Its id is not used again.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_remove(lahar_world *world, int64_t body);
+
+// Number of bodies.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_body_count(const lahar_world *world, int64_t *bodies);
+
+// Ids of the bodies, ascending.
+//
+// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+// `count`: gets the number of bodies.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
+// (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_bodies(const lahar_world *world,
+                                int64_t capacity,
+                                int64_t *ids,
+                                int64_t *count);
+
+// Number of particles of a body.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_particle_count(const lahar_world *world, int64_t body, int64_t *particles);
+
+/* ---- field -------------------------------------------------------------------------------------
+ *
+ * Particle fields: position, velocity, stress and so on, and every state variable of the body's model, by name. The
+ * functions here copy, in the order of insertion (by particle id); views show the memory itself.
+ */
+
+// A field of particles or of nodes. The texts are static.
+typedef struct lahar_field_info {
+    // sizeof(lahar_field_info); set by the host.
+    uint32_t struct_size;
+    // Number of components per point.
+    int32_t components;
+    // 1: the host may write it; 0: it is read-only.
+    int32_t writable;
+    // 0.
+    int32_t reserved;
+    // Name.
+    const char *name;
+    // SI unit.
+    const char *unit;
+    // One sentence.
+    const char *description;
+} lahar_field_info;
+
+// Number of fields of a body.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_field_count(const lahar_world *world, int64_t body, int64_t *fields);
+
+// Describes a field of a body.
+//
+// `field`: 0 to lahar_body_field_count - 1.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or index), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_field_info(const lahar_world *world,
+                                   int64_t body,
+                                   int64_t field,
+                                   lahar_field_info *info);
+
+// Index of the field of this name.
+//
+// `field`: gets the index.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
+// closest name), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_find_field(const lahar_world *world,
+                                   int64_t body,
+                                   const char *name,
+                                   int64_t *field);
+
+// Copies a field to the host, in the order of particle ids.
+//
+// `count`: number of particles of the body.
+// `values`: component c of particle k is written to values[c * component_stride + k * point_stride]; both strides 0:
+// interleaved, shape [count, components].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
+// closest name), LAHAR_ERROR_BUFFER_TOO_SMALL (count), LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_read(const lahar_world *world,
+                             int64_t body,
+                             const char *field,
+                             int64_t count,
+                             double *values,
+                             int64_t component_stride,
+                             int64_t point_stride);
+
+// Copies a field from the host, in the order of particle ids. The values are checked before the next step.
+//
+// `count`, `values`, strides: as in lahar_body_read.
+// Errors: as lahar_body_read, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_write(lahar_world *world,
+                              int64_t body,
+                              const char *field,
+                              int64_t count,
+                              const double *values,
+                              int64_t component_stride,
+                              int64_t point_stride);
+
+// Ids of a body's particles in storage order, the order of views: the k-th value of a view belongs to ids[k].
+//
+// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+// `count`: gets the number of particles.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
+// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_body_ids(const lahar_world *world,
+                            int64_t body,
+                            int64_t capacity,
+                            int64_t *ids,
+                            int64_t *count);
+
+/* ---- view --------------------------------------------------------------------------------------
+ *
+ * Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host frees each view.
+ */
+
+// Access of a view: read. A step makes the view stale.
+#define LAHAR_ACCESS_READ 0
+
+// Access of a view: read and write. No step is possible while it is open.
+#define LAHAR_ACCESS_WRITE 1
+
+// A view of a field. Freed by lahar_view_free; keeps the world alive.
+typedef struct lahar_view lahar_view;
+
+// Where the data of a view stand.
+typedef struct lahar_view_info {
+    // sizeof(lahar_view_info); set by the host.
+    uint32_t struct_size;
+    // Number of components per particle.
+    int32_t components;
+    // Component c of particle k, in storage order, stands at data[c * stride + k]. Not to be written through a view with
+    // LAHAR_ACCESS_READ. The memory stays mapped until the view is freed.
+    double *data;
+    // Number of particles.
+    int64_t count;
+    // Distance of two components, in doubles.
+    int64_t stride;
+    // Grows whenever the storage order may have changed; equal numbers mean the same order.
+    int64_t generation;
+} lahar_view_info;
+
+// Opens a view of a field of a body.
+//
+// While any view is open, bodies cannot be added or removed; while a write view is open, the world cannot step. What is
+// written through a view is checked before the next step.
+// `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
+// `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND (body),
+// LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name), LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED (write access).
+// Thread: owner
+lahar_status lahar_body_view(lahar_world *world,
+                             int64_t body,
+                             const char *field,
+                             int32_t access,
+                             lahar_view **view);
+
+// Where the data stand.
+//
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (a step has been made since),
+// LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_view_data(const lahar_view *view,
+                             lahar_view_info *info);
+
+// Closes the view. Its memory must not be used any more. NULL is ignored.
+// Thread: callback-ok
+void lahar_view_free(lahar_view *view);
+
+/* ---- wall --------------------------------------------------------------------------------------
+ *
+ * Walls: planes on the grid at any position along an axis, named by ids that are never used again.
+ */
+
+// Wall: nothing moves at it.
+#define LAHAR_WALL_STICKY 0
+
+// Wall: no motion across it, free motion along it.
+#define LAHAR_WALL_SLIP 1
+
+// Wall: as slip, but material may leave it.
+#define LAHAR_WALL_SEPARATING 2
+
+// Wall: as separating, with Coulomb friction.
+#define LAHAR_WALL_FRICTION 3
+
+// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
+typedef struct lahar_wall {
+    // sizeof(lahar_wall); set by lahar_wall_init.
+    uint32_t struct_size;
+    // Axis of the normal: 0 x, 1 y, 2 z; default 0.
+    int32_t axis;
+    // 1: the material is at larger coordinates (default); -1: at smaller.
+    int32_t side;
+    // One of LAHAR_WALL_*; default LAHAR_WALL_STICKY.
+    int32_t kind;
+    // Coordinate of the plane [m]; default 0.
+    double position;
+    // Coefficient of friction of LAHAR_WALL_FRICTION [-], >= 0; default 0.
+    double friction;
+} lahar_wall;
+
+// Fills the struct with its defaults.
+//
+// `size`: sizeof(lahar_wall).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_wall_init(lahar_wall *wall, int64_t size);
+
+// Adds a wall.
+//
+// `wall`: copied. `id`: gets the id of the wall; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_wall_add(lahar_world *world, const lahar_wall *wall, int64_t *id);
+
+// Removes a wall. Its id is not used again.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_wall_remove(lahar_world *world, int64_t id);
+
+// Force of a wall on the material in the last step.
+//
+// `force`: written [N], shape [3].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_wall_reaction(const lahar_world *world, int64_t id, double force[3]);
+
+/* ---- grid --------------------------------------------------------------------------------------
+ *
+ * The sparse background grid: blocks of nodes that follow the material. It shows the last committed step; before the
+ * first step, or after bodies came or went, mass and momentum as the particles map them.
+ */
+
+// Size of the grid, and what the last step changed.
+typedef struct lahar_grid_statistics {
+    // sizeof(lahar_grid_statistics); set by the host.
+    uint32_t struct_size;
+    // 2 or 3.
+    int32_t dimension;
+    // Nodes of a block along each axis.
+    int64_t block_edge;
+    // Number of active blocks.
+    int64_t active_blocks;
+    // Number of nodes of the active blocks.
+    int64_t active_nodes;
+    // Memory of the grid [bytes].
+    int64_t bytes;
+    // Blocks created in the last step.
+    int64_t blocks_created;
+    // Blocks removed in the last step.
+    int64_t blocks_removed;
+} lahar_grid_statistics;
+
+// Statistics of the grid.
+//
+// `statistics`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_stats(const lahar_world *world, lahar_grid_statistics *statistics);
+
+// Integer coordinates of the active blocks, in block order. Block b holds the nodes with the indices
+// b * block_edge to b * block_edge + block_edge - 1 along each axis; coordinates may be negative.
+//
+// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 ask for the count alone.
+// `count`: gets the number of active blocks.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
+// (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_blocks(const lahar_world *world,
+                               int64_t capacity,
+                               int64_t *coordinates,
+                               int64_t *count);
+
+// Number of the node with an integer index. Numbers hold until the next step: the position of the node's block in block
+// order times block_edge^dimension, plus the node's place inside the block.
+//
+// `index`: shape [3]; the node stands at origin + index * spacing.
+// `node`: gets the number, or -1 if the node is not active.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_find_node(const lahar_world *world,
+                                  const int64_t index[3],
+                                  int64_t *node);
+
+// Integer index of the node with a number: the inverse of lahar_grid_find_node.
+//
+// `index`: written, shape [3].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_node_index(const lahar_world *world, int64_t node, int64_t index[3]);
+
+// Number of node fields.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_field_count(const lahar_world *world, int64_t *fields);
+
+// Describes a node field. The number of components is that of this world's dimension.
+//
+// `field`: 0 to lahar_grid_field_count - 1.
+// `info`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_field_info(const lahar_world *world,
+                                   int64_t field,
+                                   lahar_field_info *info);
+
+// Copies a node field.
+//
+// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and `count` is `active_nodes`
+// of lahar_grid_statistics.
+// `values`: written, shape [count, components].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
+// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT (count), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_read(const lahar_world *world,
+                             const char *field,
+                             int64_t count,
+                             const int64_t *nodes,
+                             double *values);
+
+// Samples a node field at points: sum of w m q over sum of w m, w the shape function and m the mass of a node.
+//
+// `count`, `points`: [m], shape [count, dimension].
+// `values`: written, shape [count, components]; zeros where no material is.
+// `inside`: written, shape [count]: 1 where material is, else 0; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
+// LAHAR_ERROR_INVALID_ARGUMENT (count, a coordinate that is not finite), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_grid_sample(const lahar_world *world,
+                               const char *field,
+                               int64_t count,
+                               const double *points,
+                               double *values,
+                               int32_t *inside);
+
+/* ---- output ------------------------------------------------------------------------------------
+ *
+ * Output: sums over the particles, and files.
+ */
+
+// In the place of a body's id: all bodies.
+#define LAHAR_ALL_BODIES -1
+
+// Sums over particles.
+typedef struct lahar_totals {
+    // sizeof(lahar_totals); set by the host.
+    uint32_t struct_size;
+    // 0.
+    int32_t reserved;
+    // Number of particles.
+    int64_t particles;
+    // Mass [kg].
+    double mass;
+    // Momentum [kg m/s], shape [3].
+    double momentum[3];
+    // Angular momentum about the grid's origin [kg m^2/s], shape [3].
+    double angular_momentum[3];
+    // Kinetic energy [J].
+    double kinetic_energy;
+    // Strain energy [J]: the work of the stresses, or what the model stores if it says so.
+    double strain_energy;
+    // Potential energy - m g . x [J], with the present gravity.
+    double potential_energy;
+    // Centre of mass [m], shape [3].
+    double center_of_mass[3];
+} lahar_totals;
+
+// Mass, momenta and energies of a body or of all.
+//
+// `body`: an id, or LAHAR_ALL_BODIES.
+// `totals`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_totals *totals);
+
+// Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
+//
+// `path`: NUL-terminated, UTF-8; an existing file is replaced.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (empty path), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_write_vtp(const lahar_world *world,
+                                   const char *path);
+
+/* ---- layout: what the library was built with, on 64-bit systems */
+
+#if UINTPTR_MAX > 0xffffffffu
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define LAHAR_ASSERT_LAYOUT(condition) static_assert(condition, #condition)
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define LAHAR_ASSERT_LAYOUT(condition) _Static_assert(condition, #condition)
+#endif
+#endif
+#ifdef LAHAR_ASSERT_LAYOUT
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_error_info) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, code) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, body) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, particle) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, step) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, time) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_error_info, suggested_dt) == 40);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_plugin_info) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, model_count) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, id) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, version) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, author) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, licence) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, url) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_info, path) == 56);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_model_info) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, kinematics) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, name) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, summary) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, reference) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, plugin) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, parameter_count) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, state_count) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, outputs) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_info, capabilities) == 64);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_parameter_info) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, kind) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, required) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, reserved) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, name) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, symbol) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, unit) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, description) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, choices) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, default_value) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, hard_min) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, hard_max) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, advised_min) == 80);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_info, advised_max) == 88);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_state_info) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, kind) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, components) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, rotation) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, name) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, unit) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, description) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, initial) == 40);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_world_options) == 152);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, dimension) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, shape) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, transfer) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, order) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, grid_policy) == 20);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, spacing) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, origin) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, pic_rate) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, cfl) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, gravity) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, damping) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, box_min) == 104);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, box_max) == 128);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_array) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, data) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, component_stride) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, point_stride) == 16);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_particles) == 144);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, count) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, position) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, volume) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, mass) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, velocity) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, stress) == 112);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, density) == 136);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_fill) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, particles_per_cell) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, density) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, mass) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, velocity) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, stress) == 48);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_field_info) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, components) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, writable) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, reserved) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, name) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, unit) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_field_info, description) == 32);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_wall) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, axis) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, side) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, kind) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, position) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, friction) == 24);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_view_info) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, components) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, data) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, count) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, stride) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, generation) == 32);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_grid_statistics) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, dimension) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, block_edge) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, active_blocks) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, active_nodes) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, bytes) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, blocks_created) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_grid_statistics, blocks_removed) == 48);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_totals) == 120);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, particles) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, mass) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, momentum) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, angular_momentum) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, kinetic_energy) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, strain_energy) == 80);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, potential_energy) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_totals, center_of_mass) == 96);
+#undef LAHAR_ASSERT_LAYOUT
+#endif
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* LAHAR_H */

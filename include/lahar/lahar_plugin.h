@@ -1,0 +1,426 @@
+/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
+ *
+ * Generated from plugins/abi by `cargo xtask headers`; do not edit.
+ */
+
+#ifndef LAHAR_PLUGIN_H
+#define LAHAR_PLUGIN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- plugin ------------------------------------------------------------------------------------
+ *
+ * The contract between lahar and a constitutive model: types and constants only.
+ *
+ * `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that exports one function,
+ * `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the name is the major version of the ABI;
+ * within a major version tables only grow at their end and every table begins with its size.
+ *
+ * Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as the tensor
+ * components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
+ * gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
+ *
+ * Thread rule: `lahar_plugin_entry_v1`, `create`, `destroy` and `check` are called by one thread at a time; `init_state`,
+ * `update` and `wave_speed` may be called from several threads on the same instance, unless the model does not
+ * declare `LAHAR_CAPABILITY_THREAD_SAFE`. No function may unwind, `longjmp`, exit or print.
+ */
+
+// Major version of the plugin ABI; it is part of the entry's name.
+#define LAHAR_PLUGIN_ABI_MAJOR 1
+
+// Minor version: tables may have grown at their ends since lower minors.
+#define LAHAR_PLUGIN_ABI_MINOR 0
+
+// The model takes the strain increment; the engine has rotated the start stress (and symmetric state) objectively.
+#define LAHAR_KINEMATICS_STRAIN_INCREMENT 0
+
+// The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
+#define LAHAR_KINEMATICS_VELOCITY_GRADIENT 1
+
+// The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
+#define LAHAR_KINEMATICS_DEFORMATION_GRADIENT 2
+
+// A real number.
+#define LAHAR_PARAMETER_REAL 0
+
+// A whole number, given as a double.
+#define LAHAR_PARAMETER_INTEGER 1
+
+// One of the labels in `choices`, given by its position 0, 1, ...
+#define LAHAR_PARAMETER_CHOICE 2
+
+// One component.
+#define LAHAR_STATE_SCALAR 0
+
+// Three components.
+#define LAHAR_STATE_VECTOR 1
+
+// Six components: xx, yy, zz, xy, yz, zx.
+#define LAHAR_STATE_SYMMETRIC 2
+
+// Nine components, row-major.
+#define LAHAR_STATE_TENSOR 3
+
+// The state variable does not change under a rigid rotation.
+#define LAHAR_ROTATION_NONE 0
+
+// The engine rotates the state variable with the material before `update`, as it does the stress.
+#define LAHAR_ROTATION_OBJECTIVE 1
+
+// Input: mass density at the end of the step [kg/m^3].
+#define LAHAR_INPUT_DENSITY 1
+
+// Input: a length of the discretisation, the grid spacing [m].
+#define LAHAR_INPUT_ELEMENT_LENGTH 2
+
+// Input: temperature [K]. No engine of minor 0 offers it.
+#define LAHAR_INPUT_TEMPERATURE 3
+
+// Input: specific internal energy [J/kg]. No engine of minor 0 offers it.
+#define LAHAR_INPUT_INTERNAL_ENERGY 4
+
+// Input: pore pressure [Pa]. No engine of minor 0 offers it.
+#define LAHAR_INPUT_PORE_PRESSURE 5
+
+// Output: speed of the fastest wave [m/s]; every model must give it.
+#define LAHAR_OUTPUT_WAVE_SPEED 1
+
+// Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
+#define LAHAR_OUTPUT_DIFFUSIVITY 2
+
+// Output: stored energy per current volume at the end of the step [J/m^3]; replaces the engine's work integral.
+#define LAHAR_OUTPUT_ENERGY 4
+
+// Output: factor by which the model wants the next time step changed, in (0, 1] [-].
+#define LAHAR_OUTPUT_DT_FACTOR 8
+
+// Output: one of the `LAHAR_POINT_*` per point.
+#define LAHAR_OUTPUT_STATUS 16
+
+// `update`, `init_state` and `wave_speed` may run on one instance from several threads at once.
+#define LAHAR_CAPABILITY_THREAD_SAFE 1
+
+// A point's result depends on that point alone.
+#define LAHAR_CAPABILITY_POINTWISE 2
+
+// Equal input gives equal output, bit for bit.
+#define LAHAR_CAPABILITY_DETERMINISTIC 4
+
+// The extension `lahar.tangent` is offered.
+#define LAHAR_CAPABILITY_TANGENT 8
+
+// The point is updated.
+#define LAHAR_POINT_OK 0
+
+// The point is updated, but the result is less accurate than promised.
+#define LAHAR_POINT_UNRELIABLE 1
+
+// The point is updated, but the model wants a smaller step.
+#define LAHAR_POINT_SMALLER_STEP 2
+
+// The point could not be updated.
+#define LAHAR_POINT_FAILED 3
+
+// Return value of a plugin function: done.
+#define LAHAR_PLUGIN_OK 0
+
+// Return value of a plugin function: not done; `set_error` of the host table may say why.
+#define LAHAR_PLUGIN_ERROR 1
+
+// Levels of `lahar_host_api.log`, those of `lahar.h`: 0 error, 1 warning, 2 information, 3 detail.
+#define LAHAR_PLUGIN_LOG_WARNING 1
+
+// What the engine offers to a plugin. Valid for the life of the process. Every function may be called from any thread.
+typedef struct lahar_host_api {
+    // Size of this table in bytes, as the engine knows it.
+    uint32_t struct_size;
+    // Minor version of the ABI that the engine speaks.
+    uint32_t abi_minor;
+    // Hands a line to the host's log. `level` as in `lahar.h`; `message` is copied.
+    void (*log)(int32_t level, const char *message);
+    // Sets the text that explains why the function that is running returns an error; `message` is copied.
+    void (*set_error)(const char *message);
+    // 1 if the host wants long work to end, else 0.
+    int32_t (*should_stop)(void);
+} lahar_host_api;
+
+// One material parameter. Strings are UTF-8, keys ASCII.
+typedef struct lahar_parameter_desc {
+    // Name by which hosts give the value: `youngs_modulus`.
+    const char *key;
+    // Symbol of the literature: `E`.
+    const char *symbol;
+    // SI unit: `Pa`, `-`.
+    const char *unit;
+    // One sentence.
+    const char *description;
+    // `LAHAR_PARAMETER_REAL`, `_INTEGER` or `_CHOICE`.
+    int32_t kind;
+    // 1: the host must give it; 0: `default_value` is used.
+    int32_t required;
+    // Value if the host gives none.
+    double default_value;
+    // Smallest value that is accepted; -infinity for none.
+    double hard_min;
+    // Largest value that is accepted; infinity for none.
+    double hard_max;
+    // Below this a warning is logged; -infinity for none.
+    double advised_min;
+    // Above this a warning is logged; infinity for none.
+    double advised_max;
+    // Labels of a choice, separated by `|`; NULL for other kinds.
+    const char *choices;
+} lahar_parameter_desc;
+
+// One state variable: a value that a point carries from step to step.
+typedef struct lahar_state_desc {
+    // Name of the particle field: `equivalent_plastic_strain`.
+    const char *key;
+    // SI unit.
+    const char *unit;
+    // One sentence.
+    const char *description;
+    // `LAHAR_STATE_SCALAR`, `_VECTOR`, `_SYMMETRIC` or `_TENSOR`.
+    int32_t kind;
+    // `LAHAR_ROTATION_NONE` or `_OBJECTIVE`.
+    int32_t rotation;
+    // Initial value of every component, before `init_state`.
+    double initial;
+} lahar_state_desc;
+
+// A run of points. All arrays are 64-byte aligned, share `stride` (`n` rounded up to 8) and do not alias each other.
+typedef struct lahar_stress_batch {
+    // Size of this struct in bytes, as the engine knows it.
+    uint32_t struct_size;
+    // 0; bits may get a meaning later.
+    uint32_t flags;
+    // Number of points.
+    int64_t n;
+    // Component `c` of point `k` stands at `base[c * stride + k]`.
+    int64_t stride;
+    // Length of the step [s].
+    double dt;
+    // Time at the start of the step [s].
+    double time;
+    // Strain increment dt sym L, 6 components [-]; NULL unless the kinematics ask for it.
+    const double *strain_increment;
+    // Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
+    const double *velocity_gradient;
+    // Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics ask for it.
+    const double *deformation_gradient;
+    // Cauchy stress at the start, 6 components [Pa]; never written.
+    const double *stress0;
+    // State at the start, the components of all state variables in the descriptor's order; never written.
+    const double *state0;
+    // Cauchy stress at the end, 6 components [Pa]; written by `update`.
+    double *stress1;
+    // State at the end; written whole by `update` and, over the initial values, by `init_state`.
+    double *state1;
+    // The wanted inputs in the descriptor's order, each a scalar array.
+    const double *const *inputs;
+    // Speed of the fastest wave [m/s].
+    double *wave_speed;
+    // Kinematic diffusivity [m^2/s]; NULL unless declared.
+    double *diffusivity;
+    // Stored energy per current volume [J/m^3]; NULL unless declared.
+    double *energy;
+    // Wanted factor on the next time step [-]; NULL unless declared.
+    double *dt_factor;
+    // `LAHAR_POINT_*` per point, zero on entry; NULL unless declared.
+    int32_t *status;
+} lahar_stress_batch;
+
+// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process.
+typedef struct lahar_model_desc {
+    // Size of this table in bytes, as the plugin knows it.
+    uint32_t struct_size;
+    // One of `LAHAR_KINEMATICS_*`.
+    int32_t kinematics;
+    // Name by which hosts ask for the model: ASCII, unique.
+    const char *name;
+    // One sentence.
+    const char *summary;
+    // Where the model is published, with a DOI if there is one.
+    const char *reference;
+    // Number of parameters.
+    uint32_t parameter_count;
+    // `sizeof(lahar_parameter_desc)` as the plugin knows it.
+    uint32_t parameter_size;
+    // The parameters; NULL if there are none.
+    const lahar_parameter_desc *parameters;
+    // Number of state variables.
+    uint32_t state_count;
+    // `sizeof(lahar_state_desc)` as the plugin knows it.
+    uint32_t state_size;
+    // The state variables; NULL if there are none.
+    const lahar_state_desc *states;
+    // Number of wanted inputs.
+    uint32_t input_count;
+    // 0.
+    uint32_t reserved;
+    // The wanted inputs, `LAHAR_INPUT_*`; NULL if there are none.
+    const int32_t *inputs;
+    // Sum of `LAHAR_OUTPUT_*`; `LAHAR_OUTPUT_WAVE_SPEED` is mandatory.
+    uint64_t outputs;
+    // Sum of `LAHAR_CAPABILITY_*`.
+    uint64_t capabilities;
+    // Makes an instance from one value per parameter. Mandatory. [one thread at a time]
+    int32_t (*create)(const double *values, int64_t count, void **instance);
+    // Frees an instance. Mandatory. [one thread at a time]
+    void (*destroy)(void *instance);
+    // Says whether the values go together; if not, writes a NUL-terminated sentence. May be NULL. [one thread at a time]
+    int32_t (*check)(const double *values, int64_t count, char *message, int64_t capacity);
+    // Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
+    int32_t (*init_state)(const void *instance, const lahar_stress_batch *batch);
+    // One step of all points of the batch. Mandatory. [several threads]
+    int32_t (*update)(const void *instance, const lahar_stress_batch *batch);
+    // Wave speed (and diffusivity, if declared) from `stress0`, `state0` and `inputs`. Mandatory. [several threads]
+    int32_t (*wave_speed)(const void *instance, const lahar_stress_batch *batch);
+    // A table for the extension `id`, or NULL. May be NULL. [any thread]
+    const void *(*get_extension)(const char *id);
+} lahar_model_desc;
+
+// What a plugin is. All pointers must stay valid for the life of the process.
+typedef struct lahar_plugin_desc {
+    // Size of this table in bytes, as the plugin knows it.
+    uint32_t struct_size;
+    // `LAHAR_PLUGIN_ABI_MAJOR` of the header that the plugin was built with.
+    uint32_t abi_major;
+    // `LAHAR_PLUGIN_ABI_MINOR` of the header that the plugin was built with.
+    uint32_t abi_minor;
+    // Number of models, at least 1.
+    uint32_t model_count;
+    // Reverse domain name or the like: `org.lahar.linear_elastic`.
+    const char *id;
+    // Version of the plugin.
+    const char *version;
+    // Who wrote it.
+    const char *author;
+    // SPDX licence expression.
+    const char *licence;
+    // Where to find it; may be empty.
+    const char *url;
+    // The models, one pointer each.
+    const lahar_model_desc *const *models;
+} lahar_plugin_desc;
+
+// Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
+// [one thread at a time, once in a process]
+typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *host);
+
+#if defined(_WIN32)
+#define LAHAR_PLUGIN_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define LAHAR_PLUGIN_EXPORT __attribute__((visibility("default")))
+#else
+#define LAHAR_PLUGIN_EXPORT
+#endif
+
+// The one function that a plugin defines: its tables, or NULL to refuse, after `set_error`.
+// [one thread at a time, once in a process]
+LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
+
+/* ---- layout: what the library was built with, on 64-bit systems */
+
+#if UINTPTR_MAX > 0xffffffffu
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define LAHAR_ASSERT_LAYOUT(condition) static_assert(condition, #condition)
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define LAHAR_ASSERT_LAYOUT(condition) _Static_assert(condition, #condition)
+#endif
+#endif
+#ifdef LAHAR_ASSERT_LAYOUT
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_host_api) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_host_api, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_host_api, abi_minor) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_host_api, log) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_host_api, set_error) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_host_api, should_stop) == 24);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_parameter_desc) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, key) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, symbol) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, unit) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, description) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, kind) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, required) == 36);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, default_value) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, hard_min) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, hard_max) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, advised_min) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, advised_max) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_parameter_desc, choices) == 80);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_state_desc) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, key) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, unit) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, description) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, kind) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, rotation) == 28);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, initial) == 32);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_stress_batch) == 144);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, flags) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, n) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stride) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, dt) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, time) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, strain_increment) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, velocity_gradient) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, deformation_gradient) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress0) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state0) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress1) == 80);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state1) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, inputs) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, wave_speed) == 104);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, diffusivity) == 112);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, energy) == 120);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, dt_factor) == 128);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, status) == 136);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_model_desc) == 152);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, kinematics) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, name) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, summary) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, reference) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, parameter_count) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, parameter_size) == 36);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, parameters) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, state_count) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, state_size) == 52);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, states) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, input_count) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, reserved) == 68);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, inputs) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, outputs) == 80);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, capabilities) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, create) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, destroy) == 104);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, check) == 112);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, init_state) == 120);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, update) == 128);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, wave_speed) == 136);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, get_extension) == 144);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_plugin_desc) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, abi_major) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, abi_minor) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, model_count) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, id) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, version) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, author) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, licence) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, url) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, models) == 56);
+#undef LAHAR_ASSERT_LAYOUT
+#endif
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* LAHAR_PLUGIN_H */

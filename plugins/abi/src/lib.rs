@@ -1,0 +1,299 @@
+//! The contract between lahar and a constitutive model: types and constants only.
+//!
+//! `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that exports one function,
+//! `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the name is the major version of the ABI;
+//! within a major version tables only grow at their end and every table begins with its size.
+//!
+//! Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as the tensor
+//! components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
+//! gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
+//!
+//! Thread rule: `lahar_plugin_entry_v1`, `create`, `destroy` and `check` are called by one thread at a time; `init_state`,
+//! `update` and `wave_speed` may be called from several threads on the same instance, unless the model does not
+//! declare `LAHAR_CAPABILITY_THREAD_SAFE`. No function may unwind, `longjmp`, exit or print.
+#![no_std]
+#![allow(non_camel_case_types)]
+
+use core::ffi::{c_char, c_void};
+
+/// Major version of the plugin ABI; it is part of the entry's name.
+pub const LAHAR_PLUGIN_ABI_MAJOR: u32 = 1;
+/// Minor version: tables may have grown at their ends since lower minors.
+pub const LAHAR_PLUGIN_ABI_MINOR: u32 = 0;
+
+/// The model takes the strain increment; the engine has rotated the start stress (and symmetric state) objectively.
+pub const LAHAR_KINEMATICS_STRAIN_INCREMENT: i32 = 0;
+/// The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
+pub const LAHAR_KINEMATICS_VELOCITY_GRADIENT: i32 = 1;
+/// The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
+pub const LAHAR_KINEMATICS_DEFORMATION_GRADIENT: i32 = 2;
+
+/// A real number.
+pub const LAHAR_PARAMETER_REAL: i32 = 0;
+/// A whole number, given as a double.
+pub const LAHAR_PARAMETER_INTEGER: i32 = 1;
+/// One of the labels in `choices`, given by its position 0, 1, ...
+pub const LAHAR_PARAMETER_CHOICE: i32 = 2;
+
+/// One component.
+pub const LAHAR_STATE_SCALAR: i32 = 0;
+/// Three components.
+pub const LAHAR_STATE_VECTOR: i32 = 1;
+/// Six components: xx, yy, zz, xy, yz, zx.
+pub const LAHAR_STATE_SYMMETRIC: i32 = 2;
+/// Nine components, row-major.
+pub const LAHAR_STATE_TENSOR: i32 = 3;
+
+/// The state variable does not change under a rigid rotation.
+pub const LAHAR_ROTATION_NONE: i32 = 0;
+/// The engine rotates the state variable with the material before `update`, as it does the stress.
+pub const LAHAR_ROTATION_OBJECTIVE: i32 = 1;
+
+/// Input: mass density at the end of the step [kg/m^3].
+pub const LAHAR_INPUT_DENSITY: i32 = 1;
+/// Input: a length of the discretisation, the grid spacing [m].
+pub const LAHAR_INPUT_ELEMENT_LENGTH: i32 = 2;
+/// Input: temperature [K]. No engine of minor 0 offers it.
+pub const LAHAR_INPUT_TEMPERATURE: i32 = 3;
+/// Input: specific internal energy [J/kg]. No engine of minor 0 offers it.
+pub const LAHAR_INPUT_INTERNAL_ENERGY: i32 = 4;
+/// Input: pore pressure [Pa]. No engine of minor 0 offers it.
+pub const LAHAR_INPUT_PORE_PRESSURE: i32 = 5;
+
+/// Output: speed of the fastest wave [m/s]; every model must give it.
+pub const LAHAR_OUTPUT_WAVE_SPEED: u64 = 1;
+/// Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
+pub const LAHAR_OUTPUT_DIFFUSIVITY: u64 = 2;
+/// Output: stored energy per current volume at the end of the step [J/m^3]; replaces the engine's work integral.
+pub const LAHAR_OUTPUT_ENERGY: u64 = 4;
+/// Output: factor by which the model wants the next time step changed, in (0, 1] [-].
+pub const LAHAR_OUTPUT_DT_FACTOR: u64 = 8;
+/// Output: one of the `LAHAR_POINT_*` per point.
+pub const LAHAR_OUTPUT_STATUS: u64 = 16;
+
+/// `update`, `init_state` and `wave_speed` may run on one instance from several threads at once.
+pub const LAHAR_CAPABILITY_THREAD_SAFE: u64 = 1;
+/// A point's result depends on that point alone.
+pub const LAHAR_CAPABILITY_POINTWISE: u64 = 2;
+/// Equal input gives equal output, bit for bit.
+pub const LAHAR_CAPABILITY_DETERMINISTIC: u64 = 4;
+/// The extension `lahar.tangent` is offered.
+pub const LAHAR_CAPABILITY_TANGENT: u64 = 8;
+
+/// The point is updated.
+pub const LAHAR_POINT_OK: i32 = 0;
+/// The point is updated, but the result is less accurate than promised.
+pub const LAHAR_POINT_UNRELIABLE: i32 = 1;
+/// The point is updated, but the model wants a smaller step.
+pub const LAHAR_POINT_SMALLER_STEP: i32 = 2;
+/// The point could not be updated.
+pub const LAHAR_POINT_FAILED: i32 = 3;
+
+/// Return value of a plugin function: done.
+pub const LAHAR_PLUGIN_OK: i32 = 0;
+/// Return value of a plugin function: not done; `set_error` of the host table may say why.
+pub const LAHAR_PLUGIN_ERROR: i32 = 1;
+
+/// Levels of `lahar_host_api.log`, those of `lahar.h`: 0 error, 1 warning, 2 information, 3 detail.
+pub const LAHAR_PLUGIN_LOG_WARNING: i32 = 1;
+
+/// What the engine offers to a plugin. Valid for the life of the process. Every function may be called from any thread.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_host_api {
+    /// Size of this table in bytes, as the engine knows it.
+    pub struct_size: u32,
+    /// Minor version of the ABI that the engine speaks.
+    pub abi_minor: u32,
+    /// Hands a line to the host's log. `level` as in `lahar.h`; `message` is copied.
+    pub log: Option<unsafe extern "C" fn(level: i32, message: *const c_char)>,
+    /// Sets the text that explains why the function that is running returns an error; `message` is copied.
+    pub set_error: Option<unsafe extern "C" fn(message: *const c_char)>,
+    /// 1 if the host wants long work to end, else 0.
+    pub should_stop: Option<unsafe extern "C" fn() -> i32>,
+}
+
+/// One material parameter. Strings are UTF-8, keys ASCII.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_parameter_desc {
+    /// Name by which hosts give the value: `youngs_modulus`.
+    pub key: *const c_char,
+    /// Symbol of the literature: `E`.
+    pub symbol: *const c_char,
+    /// SI unit: `Pa`, `-`.
+    pub unit: *const c_char,
+    /// One sentence.
+    pub description: *const c_char,
+    /// `LAHAR_PARAMETER_REAL`, `_INTEGER` or `_CHOICE`.
+    pub kind: i32,
+    /// 1: the host must give it; 0: `default_value` is used.
+    pub required: i32,
+    /// Value if the host gives none.
+    pub default_value: f64,
+    /// Smallest value that is accepted; -infinity for none.
+    pub hard_min: f64,
+    /// Largest value that is accepted; infinity for none.
+    pub hard_max: f64,
+    /// Below this a warning is logged; -infinity for none.
+    pub advised_min: f64,
+    /// Above this a warning is logged; infinity for none.
+    pub advised_max: f64,
+    /// Labels of a choice, separated by `|`; NULL for other kinds.
+    pub choices: *const c_char,
+}
+
+/// One state variable: a value that a point carries from step to step.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_state_desc {
+    /// Name of the particle field: `equivalent_plastic_strain`.
+    pub key: *const c_char,
+    /// SI unit.
+    pub unit: *const c_char,
+    /// One sentence.
+    pub description: *const c_char,
+    /// `LAHAR_STATE_SCALAR`, `_VECTOR`, `_SYMMETRIC` or `_TENSOR`.
+    pub kind: i32,
+    /// `LAHAR_ROTATION_NONE` or `_OBJECTIVE`.
+    pub rotation: i32,
+    /// Initial value of every component, before `init_state`.
+    pub initial: f64,
+}
+
+/// A run of points. All arrays are 64-byte aligned, share `stride` (`n` rounded up to 8) and do not alias each other.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_stress_batch {
+    /// Size of this struct in bytes, as the engine knows it.
+    pub struct_size: u32,
+    /// 0; bits may get a meaning later.
+    pub flags: u32,
+    /// Number of points.
+    pub n: i64,
+    /// Component `c` of point `k` stands at `base[c * stride + k]`.
+    pub stride: i64,
+    /// Length of the step [s].
+    pub dt: f64,
+    /// Time at the start of the step [s].
+    pub time: f64,
+    /// Strain increment dt sym L, 6 components [-]; NULL unless the kinematics ask for it.
+    pub strain_increment: *const f64,
+    /// Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
+    pub velocity_gradient: *const f64,
+    /// Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics ask for it.
+    pub deformation_gradient: *const f64,
+    /// Cauchy stress at the start, 6 components [Pa]; never written.
+    pub stress0: *const f64,
+    /// State at the start, the components of all state variables in the descriptor's order; never written.
+    pub state0: *const f64,
+    /// Cauchy stress at the end, 6 components [Pa]; written by `update`.
+    pub stress1: *mut f64,
+    /// State at the end; written whole by `update` and, over the initial values, by `init_state`.
+    pub state1: *mut f64,
+    /// The wanted inputs in the descriptor's order, each a scalar array.
+    pub inputs: *const *const f64,
+    /// Speed of the fastest wave [m/s].
+    pub wave_speed: *mut f64,
+    /// Kinematic diffusivity [m^2/s]; NULL unless declared.
+    pub diffusivity: *mut f64,
+    /// Stored energy per current volume [J/m^3]; NULL unless declared.
+    pub energy: *mut f64,
+    /// Wanted factor on the next time step [-]; NULL unless declared.
+    pub dt_factor: *mut f64,
+    /// `LAHAR_POINT_*` per point, zero on entry; NULL unless declared.
+    pub status: *mut i32,
+}
+
+/// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_model_desc {
+    /// Size of this table in bytes, as the plugin knows it.
+    pub struct_size: u32,
+    /// One of `LAHAR_KINEMATICS_*`.
+    pub kinematics: i32,
+    /// Name by which hosts ask for the model: ASCII, unique.
+    pub name: *const c_char,
+    /// One sentence.
+    pub summary: *const c_char,
+    /// Where the model is published, with a DOI if there is one.
+    pub reference: *const c_char,
+    /// Number of parameters.
+    pub parameter_count: u32,
+    /// `sizeof(lahar_parameter_desc)` as the plugin knows it.
+    pub parameter_size: u32,
+    /// The parameters; NULL if there are none.
+    pub parameters: *const lahar_parameter_desc,
+    /// Number of state variables.
+    pub state_count: u32,
+    /// `sizeof(lahar_state_desc)` as the plugin knows it.
+    pub state_size: u32,
+    /// The state variables; NULL if there are none.
+    pub states: *const lahar_state_desc,
+    /// Number of wanted inputs.
+    pub input_count: u32,
+    /// 0.
+    pub reserved: u32,
+    /// The wanted inputs, `LAHAR_INPUT_*`; NULL if there are none.
+    pub inputs: *const i32,
+    /// Sum of `LAHAR_OUTPUT_*`; `LAHAR_OUTPUT_WAVE_SPEED` is mandatory.
+    pub outputs: u64,
+    /// Sum of `LAHAR_CAPABILITY_*`.
+    pub capabilities: u64,
+    /// Makes an instance from one value per parameter. Mandatory. [one thread at a time]
+    pub create: Option<unsafe extern "C" fn(values: *const f64, count: i64, instance: *mut *mut c_void) -> i32>,
+    /// Frees an instance. Mandatory. [one thread at a time]
+    pub destroy: Option<unsafe extern "C" fn(instance: *mut c_void)>,
+    /// Says whether the values go together; if not, writes a NUL-terminated sentence. May be NULL. [one thread at a time]
+    pub check:
+        Option<unsafe extern "C" fn(values: *const f64, count: i64, message: *mut c_char, capacity: i64) -> i32>,
+    /// Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
+    pub init_state: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    /// One step of all points of the batch. Mandatory. [several threads]
+    pub update: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    /// Wave speed (and diffusivity, if declared) from `stress0`, `state0` and `inputs`. Mandatory. [several threads]
+    pub wave_speed: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    /// A table for the extension `id`, or NULL. May be NULL. [any thread]
+    pub get_extension: Option<unsafe extern "C" fn(id: *const c_char) -> *const c_void>,
+}
+
+/// What a plugin is. All pointers must stay valid for the life of the process.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_plugin_desc {
+    /// Size of this table in bytes, as the plugin knows it.
+    pub struct_size: u32,
+    /// `LAHAR_PLUGIN_ABI_MAJOR` of the header that the plugin was built with.
+    pub abi_major: u32,
+    /// `LAHAR_PLUGIN_ABI_MINOR` of the header that the plugin was built with.
+    pub abi_minor: u32,
+    /// Number of models, at least 1.
+    pub model_count: u32,
+    /// Reverse domain name or the like: `org.lahar.linear_elastic`.
+    pub id: *const c_char,
+    /// Version of the plugin.
+    pub version: *const c_char,
+    /// Who wrote it.
+    pub author: *const c_char,
+    /// SPDX licence expression.
+    pub licence: *const c_char,
+    /// Where to find it; may be empty.
+    pub url: *const c_char,
+    /// The models, one pointer each.
+    pub models: *const *const lahar_model_desc,
+}
+
+/// Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
+/// [one thread at a time, once in a process]
+pub type lahar_plugin_entry = Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
+
+// SAFETY: the tables hold pointers to immutable data of static lifetime and function pointers; the contract above says
+// from which threads the functions are called.
+unsafe impl Sync for lahar_plugin_desc {}
+// SAFETY: as above.
+unsafe impl Sync for lahar_model_desc {}
+// SAFETY: as above.
+unsafe impl Sync for lahar_parameter_desc {}
+// SAFETY: as above.
+unsafe impl Sync for lahar_state_desc {}

@@ -1,0 +1,52 @@
+//! Safe Rust for authors of constitutive models.
+//!
+//! A model is a type that implements [`Model`]: its constants describe it, `new` makes an instance from parameter
+//! values and `update` advances a [`Batch`] of points. [`ModelTable::of`] turns the type into the static table of the
+//! plugin ABI, a static [`Plugin`] lists the tables, and [`export_plugin!`], in a thin `cdylib` of its own, writes the
+//! one symbol that the engine looks for. A model needs no `unsafe`.
+//!
+//! Conventions of all arrays: SI or any other consistent units; tension positive; symmetric tensors are the tensor
+//! components xx, yy, zz, xy, yz, zx; general tensors are row-major; both are three-dimensional in plane strain too.
+//!
+//! A panic in a model does not leave the plugin: the function that was running returns `LAHAR_PLUGIN_ERROR` with the
+//! text of the panic. [`Driver`] runs a model through its table without an engine: element tests are written with it.
+
+mod batch;
+mod drive;
+mod model;
+mod table;
+pub mod tensor;
+mod wall;
+
+pub use batch::{Batch, Columns, MAX_INPUTS, PointStatus};
+pub use drive::Driver;
+pub use lahar_plugin_abi as abi;
+pub use model::Model;
+pub use nalgebra;
+pub use table::{Input, Kinematics, ModelTable, Output, Parameter, Plugin, State, c_text};
+pub use wall::{enter, log};
+
+/// Writes `lahar_plugin_entry_v1`, which returns the given `&'static Plugin`.
+///
+/// Use it once, in a `cdylib` that contains nothing else: two entry symbols in one binary collide.
+///
+/// ```text
+/// lahar_plugin::export_plugin!(lahar_model_linear_elastic::PLUGIN);
+/// ```
+#[macro_export]
+macro_rules! export_plugin {
+    ($plugin:path) => {
+        /// Entry of the plugin: returns its tables.
+        ///
+        /// # Safety
+        ///
+        /// `host` is NULL or points to a host table that stays valid for the life of the process.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn lahar_plugin_entry_v1(
+            host: *const $crate::abi::lahar_host_api,
+        ) -> *const $crate::abi::lahar_plugin_desc {
+            // SAFETY: the engine passes its host table, which stays valid for the life of the process.
+            unsafe { $crate::enter(host, &$plugin) }
+        }
+    };
+}

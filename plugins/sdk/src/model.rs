@@ -1,0 +1,45 @@
+//! What an author implements.
+
+use crate::batch::Batch;
+use crate::table::{Input, Kinematics, Output, Parameter, State};
+use std::ffi::CStr;
+
+/// A constitutive model with one set of parameter values. Instances are shared by threads.
+pub trait Model: Sized + Send + Sync + 'static {
+    /// Name by which hosts ask for the model: ASCII letters, digits and underscores.
+    const NAME: &'static CStr;
+    /// One sentence.
+    const SUMMARY: &'static CStr;
+    /// Where the model is published.
+    const REFERENCE: &'static CStr;
+    /// Which measure of deformation the model takes.
+    const KINEMATICS: Kinematics;
+    /// The parameters, in the order in which `new` gets their values.
+    const PARAMETERS: &'static [Parameter];
+    /// The state variables, in the order of their components in a batch.
+    const STATES: &'static [State] = &[];
+    /// The wanted inputs, at most [`MAX_INPUTS`](crate::MAX_INPUTS); their order is that of [`Batch::input`].
+    const INPUTS: &'static [Input] = &[];
+    /// The outputs beside the stress. [`Output::WAVE_SPEED`] is mandatory.
+    const OUTPUTS: Output;
+
+    /// Makes an instance from one value per parameter; the engine has checked kinds and hard bounds.
+    fn new(values: &[f64]) -> Result<Self, String>;
+
+    /// Says whether the values go together; the text of the error is shown to the user.
+    fn check(_values: &[f64]) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Derives the first state from the start stress and the inputs. The end state holds the initial values on entry.
+    fn init_state(&self, _batch: &mut Batch<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Advances all points of the batch by one step: writes the whole end stress and end state, and the outputs.
+    /// A point that cannot be updated gets [`PointStatus::Failed`](crate::PointStatus::Failed).
+    fn update(&self, batch: &mut Batch<'_>);
+
+    /// Writes the wave speed (and the diffusivity, if declared) of the points from start stress, start state and inputs.
+    fn wave_speed(&self, batch: &mut Batch<'_>);
+}

@@ -1,0 +1,40 @@
+//! Small helpers for symmetric tensors stored as xx, yy, zz, xy, yz, zx.
+
+use nalgebra::Matrix3;
+
+/// The tensor as a 3x3 matrix.
+pub fn to_matrix(a: [f64; 6]) -> Matrix3<f64> {
+    let [xx, yy, zz, xy, yz, zx] = a;
+    Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
+}
+
+/// The symmetric part of a 3x3 matrix.
+pub fn from_matrix(a: &Matrix3<f64>) -> [f64; 6] {
+    let mean = |i, j| 0.5 * (a[(i, j)] + a[(j, i)]);
+    [a[(0, 0)], a[(1, 1)], a[(2, 2)], mean(0, 1), mean(1, 2), mean(2, 0)]
+}
+
+/// a_xx + a_yy + a_zz.
+#[inline]
+pub fn trace(a: [f64; 6]) -> f64 {
+    a[0] + a[1] + a[2]
+}
+
+/// a - tr(a)/3 I.
+#[inline]
+pub fn deviator(a: [f64; 6]) -> [f64; 6] {
+    let m = trace(a) / 3.0;
+    [a[0] - m, a[1] - m, a[2] - m, a[3], a[4], a[5]]
+}
+
+/// a : b, off-diagonal components counted twice.
+#[inline]
+pub fn contract(a: [f64; 6], b: [f64; 6]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+}
+
+/// Whether every component is finite.
+#[inline]
+pub fn is_finite(a: [f64; 6]) -> bool {
+    a.iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,192 @@
+//! A context owns what worlds share: the thread pool, the log and the list of loaded plugins.
+
+mod log;
+mod pool;
+
+pub use log::{LogLevel, LogSink};
+pub(crate) use log::{LogQueue, LogScope, push_current};
+
+use crate::error::{Error, Result, Status};
+use crate::material::{Model, Plugin};
+use crate::plugin;
+use pool::Pool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, PoisonError, RwLock};
+
+/// Largest number of threads of a context.
+pub const MAX_THREADS: usize = 1024;
+
+/// Threads, log and loaded plugins. Worlds and materials keep their context alive.
+pub struct Context {
+    pool: Option<Pool>,
+    used: Vec<AtomicBool>,
+    log: Arc<LogQueue>,
+    plugins: RwLock<Vec<&'static Plugin>>,
+}
+
+impl Context {
+    /// A context with `threads` threads: `None` stands for `LAHAR_NUM_THREADS`, and for 1 where that is not set.
+    /// One thread means that everything runs on the calling thread and none is started.
+    ///
+    /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
+    /// number; [`Status::Threads`] if the system gives no threads.
+    pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
+        let threads = match threads {
+            Some(threads) => checked_threads(threads, "the thread count")?,
+            None => threads_of_environment()?,
+        };
+        let log = Arc::new(LogQueue::default());
+        let pool = if threads > 1 { Some(Pool::new(threads, &log)?) } else { None };
+        let used = (0..threads).map(|_| AtomicBool::new(false)).collect();
+        Ok(Arc::new(Context { pool, used, log, plugins: RwLock::default() }))
+    }
+
+    /// Number of threads that run a step, the calling one included if it is the only one.
+    pub fn threads(&self) -> usize {
+        self.used.len()
+    }
+
+    /// How many distinct threads have run tasks of this context so far; see [`Context::mark_worker`].
+    pub fn threads_used(&self) -> usize {
+        self.used.iter().filter(|u| u.load(Ordering::Relaxed)).count()
+    }
+
+    /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go through.
+    pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(f),
+            None => {
+                let _scope = LogScope::enter(&self.log);
+                f()
+            }
+        }
+    }
+
+    /// Runs `a` and `b`, at the same time if there are threads; the calling code must be inside [`Context::install`].
+    ///
+    /// With one thread both run here one after the other; `rayon::join` would start rayon's global pool there.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        a: impl FnOnce() -> A + Send,
+        b: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match &self.pool {
+            Some(pool) if pool.is_inside() => rayon::join(a, b),
+            _ => (a(), b()),
+        }
+    }
+
+    /// Notes that the running thread has worked for this context. Tasks of the engine call it.
+    pub fn mark_worker(&self) {
+        let worker = match &self.pool {
+            Some(pool) => pool.worker(),
+            None => Some(0),
+        };
+        if let Some(used) = worker.and_then(|w| self.used.get(w)) {
+            used.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Error [`Status::Threads`] if this process was forked after the threads had been started: they did not come along.
+    pub fn check_process(&self) -> Result<()> {
+        self.pool.as_ref().map_or(Ok(()), Pool::check_process)
+    }
+
+    /// Loads a plugin into this context and returns its index in [`Context::plugins`].
+    ///
+    /// A text with a `/` is a path. Any other is a name that is looked for in the folders of `LAHAR_PLUGIN_PATH`
+    /// (separated by `:`): `lahar_newtonian` becomes `liblahar_newtonian.so`; the current directory is not searched.
+    /// The same file gives the same index again. Libraries stay loaded until the process ends.
+    ///
+    /// Errors: [`Status::PluginNotFound`], [`Status::PluginInvalid`], [`Status::PluginAbi`],
+    /// [`Status::PluginRefused`]. The list of plugins is then what it was.
+    pub fn load_plugin(&self, name_or_path: &str) -> Result<usize> {
+        let _scope = LogScope::enter(&self.log);
+        let plugin = plugin::load(name_or_path)?;
+        let mut plugins = self.plugins.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(index) = plugins.iter().position(|p| std::ptr::eq(*p, plugin)) {
+            return Ok(index);
+        }
+        for model in &plugin.models {
+            if let Some(other) = plugins.iter().find(|p| p.models.iter().any(|m| m.name == model.name)) {
+                return Err(Error::new(
+                    Status::PluginInvalid,
+                    format!(
+                        "plugin {}: its model `{}` is already offered by {}, and names must be unique in a context; \
+                         load only one of the two",
+                        plugin.path.display(),
+                        model.name,
+                        other.path.display()
+                    ),
+                ));
+            }
+        }
+        plugins.push(plugin);
+        Ok(plugins.len() - 1)
+    }
+
+    /// The plugins loaded into this context, in the order of loading.
+    pub fn plugins(&self) -> Vec<&'static Plugin> {
+        self.plugins.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The models of these plugins, in order.
+    pub fn models(&self) -> Vec<&'static Model> {
+        self.plugins().into_iter().flat_map(|p| &p.models).collect()
+    }
+
+    /// The model of this name. Error: [`Status::UnknownName`], with the closest name.
+    pub fn model(&self, name: &str) -> Result<&'static Model> {
+        let models = self.models();
+        models.iter().copied().find(|m| m.name == name).ok_or_else(|| {
+            let mut error = Error::unknown_name("model", name, models.iter().map(|m| m.name));
+            if models.is_empty() {
+                error.message.push_str("; load a plugin first");
+            }
+            error
+        })
+    }
+
+    /// Queues a line for the log; [`Context::flush_log`] delivers it.
+    pub fn log(&self, level: LogLevel, text: &str) {
+        self.log.push(level as i32, text);
+    }
+
+    /// Sets who gets the lines of the log: those of level at most `max_level` (see [`LogLevel`]); `None` for nobody.
+    /// Lines that are waiting go to the new sink.
+    pub fn set_log(&self, sink: Option<LogSink>, max_level: i32) {
+        self.log.set_sink(sink, max_level);
+    }
+
+    /// Delivers the lines that workers and plugins have queued, on the calling thread and outside any lock.
+    pub fn flush_log(&self) {
+        self.log.flush();
+    }
+
+    pub(crate) fn log_queue(&self) -> &Arc<LogQueue> {
+        &self.log
+    }
+}
+
+fn threads_of_environment() -> Result<usize> {
+    let name = "LAHAR_NUM_THREADS";
+    match std::env::var(name) {
+        Err(std::env::VarError::NotPresent) => Ok(1),
+        Ok(text) => match text.trim().parse() {
+            Ok(threads) => checked_threads(threads, name),
+            Err(_) => Err(thread_error(name, &format!("`{text}`"))),
+        },
+        Err(_) => Err(thread_error(name, "a text that is not UTF-8")),
+    }
+}
+
+fn checked_threads(threads: usize, what: &str) -> Result<usize> {
+    match threads {
+        1..=MAX_THREADS => Ok(threads),
+        _ => Err(thread_error(what, &threads.to_string())),
+    }
+}
+
+fn thread_error(what: &str, got: &str) -> Error {
+    Error::invalid(format!("{what} must be a whole number from 1 to {MAX_THREADS}, got {got}"))
+}

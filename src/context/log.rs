@@ -1,0 +1,127 @@
+//! The log: lines are queued wherever they arise and delivered on the thread of the caller.
+//!
+//! Each thread that works for a context points at the context's queue, so that a plugin, which knows no context, can
+//! log: workers for all their life, callers inside a [`LogScope`].
+
+use std::cell::RefCell;
+use std::mem;
+use std::sync::atomic::{AtomicI32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How important a line of the log is; the numbers are those of `lahar.h`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(i32)]
+pub enum LogLevel {
+    /// Something went wrong.
+    Error = 0,
+    /// Something is probably not what the user wants.
+    Warning = 1,
+    /// What happens.
+    Information = 2,
+    /// What happens inside.
+    Detail = 3,
+}
+
+/// Who gets the lines: called with the level and the text.
+pub type LogSink = Arc<dyn Fn(i32, &str) + Send + Sync>;
+
+/// Lines beyond this number are counted and dropped until the next delivery.
+const CAPACITY: usize = 1000;
+
+/// The lines of one context that wait for delivery.
+pub(crate) struct LogQueue {
+    max_level: AtomicI32,
+    waiting: Mutex<Waiting>,
+    sink: Mutex<Option<LogSink>>,
+}
+
+#[derive(Default)]
+struct Waiting {
+    lines: Vec<(i32, String)>,
+    lost: usize,
+}
+
+impl Default for LogQueue {
+    fn default() -> Self {
+        Self { max_level: AtomicI32::new(-1), waiting: Mutex::default(), sink: Mutex::default() }
+    }
+}
+
+impl LogQueue {
+    pub(crate) fn push(&self, level: i32, text: &str) {
+        if level > self.max_level.load(Ordering::Relaxed) {
+            return;
+        }
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        if waiting.lines.len() < CAPACITY {
+            waiting.lines.push((level, text.to_string()));
+        } else {
+            waiting.lost += 1;
+        }
+    }
+
+    pub(crate) fn set_sink(&self, sink: Option<LogSink>, max_level: i32) {
+        let level = if sink.is_some() { max_level } else { -1 };
+        self.max_level.store(level, Ordering::Relaxed);
+        *self.sink.lock().unwrap_or_else(PoisonError::into_inner) = sink;
+    }
+
+    pub(crate) fn flush(&self) {
+        let waiting = mem::take(&mut *self.waiting.lock().unwrap_or_else(PoisonError::into_inner));
+        if waiting.lines.is_empty() {
+            return;
+        }
+        let sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Some(sink) = sink else { return };
+        for (level, text) in &waiting.lines {
+            sink(*level, text);
+        }
+        if waiting.lost > 0 {
+            let text = format!("{} more lines of the log were dropped", waiting.lost);
+            sink(LogLevel::Warning as i32, &text);
+        }
+    }
+}
+
+thread_local! {
+    static CURRENT: RefCell<Option<Arc<LogQueue>>> = const { RefCell::new(None) };
+}
+
+/// Points the running thread at a queue for good: start of a worker.
+pub(crate) fn adopt(queue: &Arc<LogQueue>) {
+    CURRENT.set(Some(Arc::clone(queue)));
+}
+
+/// Queues a line where the running thread points; nobody hears it elsewhere.
+pub(crate) fn push_current(level: i32, text: &str) {
+    // A thread that is being taken down has no queue any more.
+    let _ = CURRENT.try_with(|current| {
+        if let Ok(current) = current.try_borrow()
+            && let Some(queue) = current.as_ref()
+        {
+            queue.push(level, text);
+        }
+    });
+}
+
+/// Points the running thread at a queue until it is dropped.
+pub(crate) struct LogScope {
+    previous: Option<Arc<LogQueue>>,
+}
+
+impl LogScope {
+    pub(crate) fn enter(queue: &Arc<LogQueue>) -> Self {
+        Self { previous: CURRENT.replace(Some(Arc::clone(queue))) }
+    }
+
+    /// Enters only where the thread points at no queue: cheap on workers.
+    pub(crate) fn enter_if_none(queue: &Arc<LogQueue>) -> Option<Self> {
+        CURRENT.with_borrow(Option::is_none).then(|| Self::enter(queue))
+    }
+}
+
+impl Drop for LogScope {
+    fn drop(&mut self) {
+        CURRENT.set(self.previous.take());
+    }
+}

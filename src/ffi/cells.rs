@@ -1,0 +1,250 @@
+//! What stands behind the handles: shared cells, so that children keep parents alive and handles are freed in any order.
+
+use super::arguments::reference;
+use super::context::lahar_context;
+use super::entry::Scope;
+use super::world::lahar_world;
+use crate::context::Context;
+use crate::error::{Error, Result, Status};
+use crate::world::World;
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
+
+/// A context and the last error of any call on it or on its children.
+pub(super) struct ContextCell {
+    /// The engine's context.
+    pub(super) context: Arc<Context>,
+    last_error: Mutex<Option<Error>>,
+}
+
+impl ContextCell {
+    /// A cell without an error.
+    pub(super) fn new(context: Arc<Context>) -> Arc<Self> {
+        Arc::new(Self { context, last_error: Mutex::new(None) })
+    }
+
+    /// Keeps the error for `lahar_context_error_message`.
+    pub(super) fn set_last_error(&self, error: Error) {
+        *self.last_error.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+    }
+
+    /// The last error of any thread.
+    pub(super) fn last_error(&self) -> Option<Error> {
+        self.last_error.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// What a mutating call does to the storage of the particles, which open views look at.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Change {
+    /// Parameters or values: views stay as they are.
+    Values,
+    /// A step: particles may be reordered. An open write view forbids it, read views become stale.
+    Step,
+    /// Bodies come or go. Any open view forbids it.
+    Bodies,
+}
+
+/// What `World::advance` did: number of committed steps, time that was reached [s], and the error that ended it.
+pub(super) type Steps = (i64, f64, Result<()>);
+
+/// A world with its lock, and what views need to know.
+pub(super) struct WorldCell {
+    /// The parent.
+    pub(super) context: Arc<ContextCell>,
+    /// 2 or 3.
+    pub(super) dimension: usize,
+    world: RwLock<World>,
+    poisoned: AtomicBool,
+    read_views: AtomicI64,
+    write_views: AtomicI64,
+    generation: AtomicI64,
+}
+
+impl WorldCell {
+    /// A cell without views.
+    pub(super) fn new(context: Arc<ContextCell>, world: World) -> Arc<Self> {
+        Arc::new(Self {
+            context,
+            dimension: world.options().dimension,
+            world: RwLock::new(world),
+            poisoned: AtomicBool::new(false),
+            read_views: AtomicI64::new(0),
+            write_views: AtomicI64::new(0),
+            generation: AtomicI64::new(0),
+        })
+    }
+
+    /// After a panic: mutating calls are refused from now on.
+    pub(super) fn poison(&self) {
+        self.poisoned.store(true, Ordering::Release);
+    }
+
+    /// How often the storage order may have changed.
+    pub(super) fn generation(&self) -> i64 {
+        self.generation.load(Ordering::Acquire)
+    }
+
+    /// A vector of the host; in two dimensions its third component is ignored.
+    pub(super) fn vector(&self, mut vector: [f64; 3]) -> [f64; 3] {
+        vector[self.dimension..].fill(0.0);
+        vector
+    }
+
+    /// Runs a query beside other queries; busy while the world changes. A poisoned world answers too.
+    pub(super) fn query<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
+        f(&*self.read()?)
+    }
+
+    /// As [`WorldCell::query`], for what depends on the storage order or on the grid: makes them current before.
+    pub(super) fn query_order<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
+        let stale = |world: &World| !world.is_fresh() && !self.is_poisoned(world);
+        let is_stale = stale(&*self.read()?);
+        if is_stale {
+            self.change(Change::Step, World::refresh)?;
+        }
+        let world = self.read()?;
+        if stale(&world) { Err(busy()) } else { f(&world) }
+    }
+
+    /// Runs a mutating call: alone, on a world that is not poisoned, and if the open views allow it.
+    pub(super) fn change<R>(
+        &self,
+        change: Change,
+        f: impl FnOnce(&mut World) -> Result<R>,
+    ) -> Result<R> {
+        let is_refused =
+            |result: &Result<R>| matches!(result, Err(error) if error.status as i32 > 0);
+        self.run(change, f, is_refused)?
+    }
+
+    /// Runs many steps: (number of committed steps, time, error).
+    pub(super) fn advance(&self, f: impl FnOnce(&mut World) -> Steps) -> Result<Steps> {
+        self.run(Change::Step, f, |(done, _, _)| *done == 0)
+    }
+
+    /// `is_unchanged` tells from the result whether nothing was done.
+    fn run<R>(
+        &self,
+        change: Change,
+        f: impl FnOnce(&mut World) -> R,
+        is_unchanged: impl FnOnce(&R) -> bool,
+    ) -> Result<R> {
+        let mut world = self.write(change)?;
+        let was_fresh = world.is_fresh();
+        if change == Change::Step {
+            self.context.context.check_process()?;
+            // Before the call, so that views are stale after a panic too; nobody reads it under the write lock.
+            self.generation.fetch_add(1, Ordering::AcqRel);
+        }
+        let result = f(&mut world);
+        if change == Change::Step && was_fresh && is_unchanged(&result) && !world.is_poisoned() {
+            self.generation.fetch_sub(1, Ordering::AcqRel);
+        }
+        Ok(result)
+    }
+
+    fn is_poisoned(&self, world: &World) -> bool {
+        self.poisoned.load(Ordering::Acquire) || self.world.is_poisoned() || world.is_poisoned()
+    }
+
+    fn read(&self) -> Result<RwLockReadGuard<'_, World>> {
+        match self.world.try_read() {
+            Ok(world) => Ok(world),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(busy()),
+        }
+    }
+
+    fn write(&self, change: Change) -> Result<RwLockWriteGuard<'_, World>> {
+        let world = match self.world.try_write() {
+            Ok(world) => world,
+            Err(TryLockError::Poisoned(_)) => return Err(poisoned()),
+            Err(TryLockError::WouldBlock) => return Err(busy()),
+        };
+        if self.is_poisoned(&world) {
+            return Err(poisoned());
+        }
+        let reading = self.read_views.load(Ordering::Acquire);
+        let writing = self.write_views.load(Ordering::Acquire);
+        match change {
+            Change::Step if writing > 0 => Err(view_open(writing, "write view", "stepping")),
+            Change::Bodies if reading + writing > 0 => {
+                Err(view_open(reading + writing, "view", "adding or removing a body"))
+            }
+            _ => Ok(world),
+        }
+    }
+}
+
+/// Counts as an open view while it lives.
+pub(super) struct OpenView {
+    /// The world that is looked at; it lives as long as the view.
+    pub(super) cell: Arc<WorldCell>,
+    write: bool,
+}
+
+impl OpenView {
+    /// Must be called under the world's lock, so that no step comes between the check and the count.
+    pub(super) fn new(cell: &Arc<WorldCell>, write: bool) -> Self {
+        let view = Self { cell: cell.clone(), write };
+        view.counter().fetch_add(1, Ordering::AcqRel);
+        view
+    }
+
+    /// Whether the view may be written through.
+    pub(super) fn is_write(&self) -> bool {
+        self.write
+    }
+
+    fn counter(&self) -> &AtomicI64 {
+        if self.write { &self.cell.write_views } else { &self.cell.read_views }
+    }
+}
+
+impl Drop for OpenView {
+    fn drop(&mut self) {
+        self.counter().fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+impl Scope {
+    /// The context behind a handle; errors and log lines of this call belong to it.
+    pub(super) unsafe fn context(
+        &mut self,
+        handle: *const lahar_context,
+    ) -> Result<Arc<ContextCell>> {
+        // SAFETY: by contract of the caller the handle is NULL or alive.
+        let cell = unsafe { reference(handle, "context") }?.cell.clone();
+        self.attach_context(&cell);
+        Ok(cell)
+    }
+
+    /// The world behind a handle; a panic in this call poisons it.
+    pub(super) unsafe fn world(&mut self, handle: *const lahar_world) -> Result<Arc<WorldCell>> {
+        // SAFETY: by contract of the caller the handle is NULL or alive.
+        let cell = unsafe { reference(handle, "world") }?.cell.clone();
+        self.attach_world(&cell);
+        Ok(cell)
+    }
+}
+
+fn busy() -> Error {
+    Error::new(
+        Status::Busy,
+        "another thread is using the world; expected one mutating call at a time: try again",
+    )
+}
+
+fn poisoned() -> Error {
+    let text =
+        "the world was poisoned by an earlier call that failed; it can only be queried and freed";
+    Error::new(Status::Poisoned, text)
+}
+
+fn view_open(count: i64, what: &str, action: &str) -> Error {
+    Error::new(
+        Status::ViewOpen,
+        format!("{count} {what}(s) open; free them with lahar_view_free before {action}"),
+    )
+}

@@ -1,0 +1,294 @@
+//! Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
+
+use super::arguments::{
+    Grows, c_string, count, handle_out, index, optional_out, out, struct_out, text,
+};
+use super::cells::ContextCell;
+use super::entry::{call_host, entry, quiet_entry};
+use super::status::lahar_status;
+use crate::context::{Context, LogLevel};
+use crate::error::{Error, Result};
+use std::ffi::{CStr, c_char, c_void};
+use std::io::Write;
+use std::sync::Arc;
+
+/// Threads, log and loaded plugins. Freed by lahar_context_free; worlds, materials and views keep it alive.
+pub struct lahar_context {
+    pub(super) cell: Arc<ContextCell>,
+}
+
+/// Log level: something failed.
+pub const LAHAR_LOG_ERROR: i32 = 0;
+/// Log level: something is unusual, such as a parameter outside its advised bounds.
+pub const LAHAR_LOG_WARNING: i32 = 1;
+/// Log level: milestones, such as a loaded plugin.
+pub const LAHAR_LOG_INFORMATION: i32 = 2;
+/// Log level: details for finding a fault.
+pub const LAHAR_LOG_DETAIL: i32 = 3;
+
+// The numbers are the engine's.
+const _: () = {
+    assert!(LAHAR_LOG_ERROR == LogLevel::Error as i32);
+    assert!(LAHAR_LOG_WARNING == LogLevel::Warning as i32);
+    assert!(LAHAR_LOG_INFORMATION == LogLevel::Information as i32);
+    assert!(LAHAR_LOG_DETAIL == LogLevel::Detail as i32);
+};
+
+/// Receives a line of the log: a LAHAR_LOG_ level, a text in UTF-8 without a newline that is valid during the call, and
+/// the pointer given to lahar_context_set_log. Called on the thread that called lahar, in the host's floating-point
+/// environment, with no lock held, just before the function returns. It may call functions tagged `callback-ok` or
+/// `any`. It must not unwind, throw or longjmp.
+pub type lahar_log_callback =
+    Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
+
+/// A loaded plugin. The texts are static: they live as long as the process.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_plugin_info {
+    /// sizeof(lahar_plugin_info); set by the host.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Number of models.
+    pub model_count: i64,
+    /// Identifier, such as "org.lahar.linear_elastic".
+    pub id: *const c_char,
+    /// Version of the plugin.
+    pub version: *const c_char,
+    /// Who wrote it.
+    pub author: *const c_char,
+    /// Licence, an SPDX expression.
+    pub licence: *const c_char,
+    /// Where to find it; may be empty.
+    pub url: *const c_char,
+    /// The file that was loaded.
+    pub path: *const c_char,
+}
+
+// SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers and raw pointers only.
+unsafe impl Grows for lahar_plugin_info {
+    const NAME: &'static str = "lahar_plugin_info";
+    const FIRST: usize = 64;
+}
+
+/// Makes a context.
+///
+/// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
+/// set. With more than 1 the context starts that many threads of its own; they end with it.
+/// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or the variable), LAHAR_ERROR_THREADS.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_create(
+    threads: i32,
+    context: *mut *mut lahar_context,
+) -> lahar_status {
+    entry("lahar_context_create", |scope| {
+        // SAFETY: the host passes NULL or a writable pointer.
+        let place = unsafe { handle_out(context, "context") }?;
+        let threads = count(threads.into(), "threads")?;
+        let cell = ContextCell::new(Context::new((threads > 0).then_some(threads))?);
+        scope.attach_context(&cell);
+        place.set(Box::into_raw(Box::new(lahar_context { cell })));
+        Ok(())
+    })
+}
+
+/// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and views are freed too.
+/// NULL is ignored.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_free(context: *mut lahar_context) {
+    quiet_entry(|| {
+        if !context.is_null() {
+            // SAFETY: the handle came from Box::into_raw in lahar_context_create and is freed once.
+            drop(unsafe { Box::from_raw(context) });
+        }
+    });
+}
+
+/// Number of threads of the context.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_thread_count(
+    context: *const lahar_context,
+    threads: *mut i32,
+) -> lahar_status {
+    entry("lahar_context_thread_count", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
+        let (cell, threads) = unsafe { (scope.context(context)?, out(threads, "threads")?) };
+        threads.set(cell.context.threads() as i32);
+        Ok(())
+    })
+}
+
+/// Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_threads_used(
+    context: *const lahar_context,
+    threads: *mut i32,
+) -> lahar_status {
+    entry("lahar_context_threads_used", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
+        let (cell, threads) = unsafe { (scope.context(context)?, out(threads, "threads")?) };
+        threads.set(cell.context.threads_used() as i32);
+        Ok(())
+    })
+}
+
+/// The host's pointer on its way back to the host's callback.
+struct User(*mut c_void);
+
+// SAFETY: the pointer is never followed here; lahar_context_set_log tells the host that it is handed to the callback
+// on every thread that calls lahar.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+impl User {
+    fn pointer(&self) -> *mut c_void {
+        self.0
+    }
+}
+
+/// Sets where log lines go. Without this call lahar is silent.
+///
+/// `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
+/// `user`: handed to the callback on every thread that calls functions of this context; lahar does not follow it.
+/// `max_level`: the most detailed level that is wanted, one of LAHAR_LOG_*.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_set_log(
+    context: *mut lahar_context,
+    callback: lahar_log_callback,
+    user: *mut c_void,
+    max_level: i32,
+) -> lahar_status {
+    entry("lahar_context_set_log", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.context(context) }?;
+        if !(LAHAR_LOG_ERROR..=LAHAR_LOG_DETAIL).contains(&max_level) {
+            return Err(Error::invalid(format!(
+                "`max_level` is {max_level}; expected 0 to 3 (LAHAR_LOG_*)"
+            )));
+        }
+        cell.context.set_log(callback.map(|callback| sink(callback, User(user))), max_level);
+        Ok(())
+    })
+}
+
+type Callback = unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void);
+
+fn sink(callback: Callback, user: User) -> Arc<dyn Fn(i32, &str) + Send + Sync> {
+    Arc::new(move |level, line| {
+        let line = c_string(line);
+        // SAFETY: the host's callback follows the contract of lahar_log_callback; the text lives during the call.
+        call_host(|| unsafe { callback(level, line.as_ptr(), user.pointer()) });
+    })
+}
+
+/// A ready log callback: writes one line to standard error. `user` is not used.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_log_stderr(level: i32, message: *const c_char, user: *mut c_void) {
+    let _ = user;
+    quiet_entry(|| {
+        if message.is_null() {
+            return;
+        }
+        // SAFETY: not NULL, and NUL-terminated by the contract of lahar_log_callback.
+        let line = unsafe { CStr::from_ptr(message) }.to_string_lossy();
+        let level =
+            ["error", "warning", "information", "detail"].get(level as usize).unwrap_or(&"log");
+        let _ = writeln!(std::io::stderr(), "lahar {level}: {line}");
+    });
+}
+
+/// Loads a plugin into the context; a plugin that is loaded already is found again. It stays in memory until the
+/// process ends.
+///
+/// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
+/// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':'.
+/// `plugin`: gets its index in the context; may be NULL.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
+/// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_load_plugin(
+    context: *mut lahar_context,
+    name_or_path: *const c_char,
+    plugin: *mut i64,
+) -> lahar_status {
+    entry("lahar_context_load_plugin", |scope| {
+        // SAFETY: the host passes NULL or a live handle, a text and a writable integer.
+        let (cell, name, plugin) = unsafe {
+            (
+                scope.context(context)?,
+                text(name_or_path, "name_or_path")?,
+                optional_out(plugin, "plugin")?,
+            )
+        };
+        let position = cell.context.load_plugin(name)?;
+        plugin.inspect(|plugin| plugin.set(position as i64));
+        Ok(())
+    })
+}
+
+/// Number of plugins that are loaded into the context.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_plugin_count(
+    context: *const lahar_context,
+    plugins: *mut i64,
+) -> lahar_status {
+    entry("lahar_context_plugin_count", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
+        let (cell, plugins) = unsafe { (scope.context(context)?, out(plugins, "plugins")?) };
+        plugins.set(cell.context.plugins().len() as i64);
+        Ok(())
+    })
+}
+
+/// Describes a plugin.
+///
+/// `plugin`: 0 to lahar_context_plugin_count - 1.
+/// `info`: written; the host has set `struct_size`.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_plugin_info(
+    context: *const lahar_context,
+    plugin: i64,
+    info: *mut lahar_plugin_info,
+) -> lahar_status {
+    entry("lahar_context_plugin_info", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
+        let (cell, info) = unsafe { (scope.context(context)?, struct_out(info, "info")?) };
+        info.set(plugin_info(&cell.context, plugin)?);
+        Ok(())
+    })
+}
+
+fn plugin_info(context: &Context, plugin: i64) -> Result<lahar_plugin_info> {
+    let plugins = context.plugins();
+    let plugin = plugins[index(plugin, plugins.len(), "plugin")?];
+    Ok(lahar_plugin_info {
+        struct_size: 0,
+        reserved: 0,
+        model_count: plugin.models.len() as i64,
+        id: plugin.id_c.as_ptr(),
+        version: plugin.version_c.as_ptr(),
+        author: plugin.author_c.as_ptr(),
+        licence: plugin.licence_c.as_ptr(),
+        url: plugin.url_c.as_ptr(),
+        path: plugin.path_c.as_ptr(),
+    })
+}

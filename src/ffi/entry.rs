@@ -1,0 +1,199 @@
+//! The one boundary between C and the engine.
+//!
+//! [`entry`] runs the body of every exported function that can fail. On the way in it silences the panic hook for this
+//! thread and sets the default floating-point environment. On the way out it turns an error or a panic into a status,
+//! keeps the error for `lahar_last_error_*` and for the context, poisons the world after a panic, and delivers the log
+//! lines that were queued. By then every lock is released, so callbacks may call the library.
+
+use super::cells::{ContextCell, WorldCell};
+use super::fpenv;
+use super::status::lahar_status;
+use crate::error::{Error, Result, Status};
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex};
+
+thread_local! {
+    /// How many entries this thread is inside of; a worker thread of a pool counts as inside for good.
+    static INSIDE: Cell<u32> = const { Cell::new(0) };
+    /// Where the last silent panic of this thread happened.
+    static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+    /// The error of the last call of this thread that failed.
+    static LAST_ERROR: RefCell<Option<Error>> = const { RefCell::new(None) };
+}
+
+/// The objects that a call works on. They are kept alive until the log is flushed, even if a callback frees the handle.
+#[derive(Default)]
+pub(super) struct Scope {
+    context: Option<Arc<ContextCell>>,
+    world: Option<Arc<WorldCell>>,
+}
+
+impl Scope {
+    /// Errors and log lines of this call belong to `context`.
+    pub(super) fn attach_context(&mut self, context: &Arc<ContextCell>) {
+        self.context = Some(context.clone());
+    }
+
+    /// As [`Scope::attach_context`]; a panic in this call poisons `world`.
+    pub(super) fn attach_world(&mut self, world: &Arc<WorldCell>) {
+        self.attach_context(&world.context);
+        self.world = Some(world.clone());
+    }
+
+    fn finish(self, function: &str, outcome: std::thread::Result<Result<()>>) -> Status {
+        let result = outcome.unwrap_or_else(|payload| {
+            if let Some(world) = &self.world {
+                world.poison();
+            }
+            Err(panic_error(payload))
+        });
+        let status = match result {
+            Ok(()) => Status::Ok,
+            Err(mut error) => {
+                error.message = format!("{function}: {}", error.message);
+                self.keep(error)
+            }
+        };
+        if let Some(context) = &self.context {
+            context.context.flush_log();
+        }
+        status
+    }
+
+    fn keep(&self, error: Error) -> Status {
+        let status = error.status;
+        if let Some(context) = &self.context {
+            context.set_last_error(error.clone());
+        }
+        let _ = LAST_ERROR.try_with(|last| last.replace(Some(error)));
+        status
+    }
+}
+
+/// Runs the body of an exported function; `function` is its name, for the message.
+pub(super) fn entry(function: &str, body: impl FnOnce(&mut Scope) -> Result<()>) -> lahar_status {
+    install_hook();
+    let _inside = Inside::enter();
+    let _environment = fpenv::Guard::new();
+    let status = catch_unwind(AssertUnwindSafe(|| {
+        let mut scope = Scope::default();
+        let outcome = catch_unwind(AssertUnwindSafe(|| body(&mut scope)));
+        scope.finish(function, outcome)
+    }));
+    status.unwrap_or(Status::Panic) as lahar_status
+}
+
+/// Runs code without errors, such as a destructor, under the same protection; a panic ends here.
+pub(super) fn quiet_entry(body: impl FnOnce()) {
+    install_hook();
+    let _inside = Inside::enter();
+    let _environment = fpenv::Guard::new();
+    let _ = catch_unwind(AssertUnwindSafe(body));
+}
+
+/// Runs the body of a function that asks for the last error and therefore must not replace it.
+pub(super) fn status_only(body: impl FnOnce() -> Result<()>) -> lahar_status {
+    let mut status = Status::Panic;
+    quiet_entry(|| status = body().map_or_else(|error| error.status, |()| Status::Ok));
+    status as lahar_status
+}
+
+/// Calls a function of the host: in its floating-point environment, and with its panics its own.
+pub(super) fn call_host<R>(f: impl FnOnce() -> R) -> R {
+    let depth = INSIDE.try_with(|inside| inside.replace(0)).unwrap_or(0);
+    let result = fpenv::with_host(f);
+    let _ = INSIDE.try_with(|inside| inside.set(depth));
+    result
+}
+
+/// The error of the last call of this thread that failed.
+pub(super) fn last_error() -> Option<Error> {
+    LAST_ERROR.try_with(|last| last.borrow().clone()).unwrap_or(None)
+}
+
+/// Panics of this thread print nothing from now on: for the worker threads of a pool.
+pub(crate) fn mark_silent_thread() {
+    let _ = INSIDE.try_with(|inside| inside.set(inside.get() + 1));
+}
+
+struct Inside;
+
+impl Inside {
+    fn enter() -> Self {
+        mark_silent_thread();
+        Self
+    }
+}
+
+impl Drop for Inside {
+    fn drop(&mut self) {
+        let _ = INSIDE.try_with(|inside| inside.set(inside.get().saturating_sub(1)));
+    }
+}
+
+/// Once in a process: puts a hook before the present one that is silent on threads inside the library.
+fn install_hook() {
+    static INSTALLED: Mutex<bool> = Mutex::new(false);
+    thread_local!(static SEEN: Cell<bool> = const { Cell::new(false) });
+    // A thread that is unwinding must not touch the hook; the next call does.
+    if SEEN.try_with(Cell::get).unwrap_or(true) || std::thread::panicking() {
+        return;
+    }
+    let mut installed = INSTALLED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    if !*installed {
+        let previous = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if INSIDE.try_with(Cell::get).unwrap_or(0) == 0 {
+                previous(info);
+            } else {
+                let place = info.location().map(|at| format!(" at {}:{}", at.file(), at.line()));
+                let _ = PANIC_PLACE.try_with(|last| last.replace(place));
+            }
+        }));
+        *installed = true;
+    }
+    let _ = SEEN.try_with(|seen| seen.set(true));
+}
+
+fn panic_error(payload: Box<dyn Any + Send>) -> Error {
+    let text = match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
+        (Some(text), _) => text,
+        (_, Some(text)) => text.as_str(),
+        _ => "no message",
+    };
+    let place = PANIC_PLACE.try_with(|last| last.take()).unwrap_or(None).unwrap_or_default();
+    Error::new(
+        Status::Panic,
+        format!("a defect of lahar was caught{place}: {text}; please report it"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_a_status_and_a_message_and_the_next_call_works() {
+        let status = entry("lahar_test", |_| panic!("number {}", 7));
+        assert_eq!(status, Status::Panic as i32);
+        let message = last_error().expect("an error is kept").message;
+        assert!(message.starts_with("lahar_test: a defect of lahar was caught at "), "{message}");
+        assert!(message.contains("number 7"), "{message}");
+        assert_eq!(entry("lahar_test", |_| Ok(())), 0);
+    }
+
+    #[test]
+    fn a_panic_of_the_host_outside_of_lahar_reaches_the_previous_hook() {
+        assert_eq!(entry("lahar_test", |_| Ok(())), 0);
+        assert_eq!(INSIDE.with(Cell::get), 0);
+        let inside = Cell::new(9);
+        entry("lahar_test", |_| {
+            inside.set(INSIDE.with(Cell::get));
+            assert_eq!(call_host(|| INSIDE.with(Cell::get)), 0);
+            Ok(())
+        });
+        assert_eq!(inside.get(), 1);
+    }
+}

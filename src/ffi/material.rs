@@ -1,0 +1,96 @@
+//! Materials: a model with values of its parameters. A material may be used by many bodies and worlds.
+
+use super::arguments::{count, handle_out, out, reference, slice, text};
+use super::cells::ContextCell;
+use super::context::lahar_context;
+use super::entry::{entry, quiet_entry};
+use super::status::lahar_status;
+use crate::error::Result;
+use crate::material::Material;
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A model with values of its parameters. Freed by lahar_material_free; bodies keep what they need.
+pub struct lahar_material {
+    pub(super) material: Arc<Material>,
+    pub(super) context: Arc<ContextCell>,
+}
+
+/// Makes a material from named values. Parameters that are not named have their defaults.
+///
+/// `model`: name of a model of a loaded plugin.
+/// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of the model's description;
+/// NULL is allowed if `count` is 0.
+/// `material`: set to the new handle, or to NULL on failure; the host frees it with lahar_material_free.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message tells the closest),
+/// LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS, LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_material_create(
+    context: *mut lahar_context,
+    model: *const c_char,
+    count: i64,
+    names: *const *const c_char,
+    values: *const f64,
+    material: *mut *mut lahar_material,
+) -> lahar_status {
+    entry("lahar_material_create", |scope| {
+        // SAFETY: the host passes NULL or a writable pointer, a live handle, a text.
+        let (place, cell, model) = unsafe {
+            (handle_out(material, "material")?, scope.context(context)?, text(model, "model")?)
+        };
+        // SAFETY: the host passes `count` names and values.
+        let named = unsafe { named_values(count, names, values) }?;
+        let material = Material::new(&cell.context, model, &named)?;
+        place.set(Box::into_raw(Box::new(lahar_material { material, context: cell })));
+        Ok(())
+    })
+}
+
+unsafe fn named_values<'a>(
+    n: i64,
+    names: *const *const c_char,
+    values: *const f64,
+) -> Result<Vec<(&'a str, f64)>> {
+    let n = count(n, "count")?;
+    // SAFETY: by contract of the caller `n` names and `n` values stand there.
+    let (names, values) = unsafe { (slice(names, n, "names")?, slice(values, n, "values")?) };
+    let pairs = names.iter().zip(values).enumerate();
+    // SAFETY: by contract of the caller each name is NULL or a NUL-terminated text.
+    pairs
+        .map(|(i, (name, value))| Ok((unsafe { text(*name, &format!("names[{i}]")) }?, *value)))
+        .collect()
+}
+
+/// Frees the handle; bodies made of the material go on. NULL is ignored.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_material_free(material: *mut lahar_material) {
+    quiet_entry(|| {
+        if !material.is_null() {
+            // SAFETY: the handle came from Box::into_raw in lahar_material_create and is freed once.
+            drop(unsafe { Box::from_raw(material) });
+        }
+    });
+}
+
+/// Value of a parameter, given or default, in the unit of its description.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_material_value(
+    material: *const lahar_material,
+    parameter: *const c_char,
+    value: *mut f64,
+) -> lahar_status {
+    entry("lahar_material_value", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let material = unsafe { reference(material, "material") }?;
+        scope.attach_context(&material.context);
+        // SAFETY: the host passes NULL or a text, and NULL or a writable double.
+        let (parameter, place) = unsafe { (text(parameter, "parameter")?, out(value, "value")?) };
+        place.set(material.material.value(parameter)?);
+        Ok(())
+    })
+}

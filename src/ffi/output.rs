@@ -1,0 +1,107 @@
+//! Output: sums over the particles, and files.
+
+use super::arguments::{Grows, struct_out, text};
+use super::entry::entry;
+use super::status::lahar_status;
+use super::world::lahar_world;
+use crate::error::{Error, Result};
+use crate::world::queries::Totals;
+use std::ffi::c_char;
+use std::path::Path;
+
+/// In the place of a body's id: all bodies.
+pub const LAHAR_ALL_BODIES: i64 = -1;
+
+/// Sums over particles.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_totals {
+    /// sizeof(lahar_totals); set by the host.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Number of particles.
+    pub particles: i64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Momentum [kg m/s], shape [3].
+    pub momentum: [f64; 3],
+    /// Angular momentum about the grid's origin [kg m^2/s], shape [3].
+    pub angular_momentum: [f64; 3],
+    /// Kinetic energy [J].
+    pub kinetic_energy: f64,
+    /// Strain energy [J]: the work of the stresses, or what the model stores if it says so.
+    pub strain_energy: f64,
+    /// Potential energy - m g . x [J], with the present gravity.
+    pub potential_energy: f64,
+    /// Centre of mass [m], shape [3].
+    pub center_of_mass: [f64; 3],
+}
+
+// SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers only.
+unsafe impl Grows for lahar_totals {
+    const NAME: &'static str = "lahar_totals";
+    const FIRST: usize = 120;
+}
+
+/// Mass, momenta and energies of a body or of all.
+///
+/// `body`: an id, or LAHAR_ALL_BODIES.
+/// `totals`: written; the host has set `struct_size`.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_totals(
+    world: *const lahar_world,
+    body: i64,
+    totals: *mut lahar_totals,
+) -> lahar_status {
+    entry("lahar_world_totals", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
+        let (cell, place) = unsafe { (scope.world(world)?, struct_out(totals, "totals")?) };
+        let totals = cell.query(|w| w.totals((body != LAHAR_ALL_BODIES).then_some(body)))?;
+        place.set(from_totals(&totals));
+        Ok(())
+    })
+}
+
+fn from_totals(totals: &Totals) -> lahar_totals {
+    lahar_totals {
+        struct_size: 0,
+        reserved: 0,
+        particles: totals.particles,
+        mass: totals.mass,
+        momentum: totals.momentum,
+        angular_momentum: totals.angular_momentum,
+        kinetic_energy: totals.kinetic_energy,
+        strain_energy: totals.strain_energy,
+        potential_energy: totals.potential_energy,
+        center_of_mass: totals.center_of_mass,
+    }
+}
+
+/// Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
+///
+/// `path`: NUL-terminated, UTF-8; an existing file is replaced.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (empty path), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_write_vtp(
+    world: *const lahar_world,
+    path: *const c_char,
+) -> lahar_status {
+    entry("lahar_world_write_vtp", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a text.
+        let (cell, path) = unsafe { (scope.world(world)?, text(path, "path")?) };
+        let path = check_path(path)?;
+        cell.query(|w| w.write_vtp(path))
+    })
+}
+
+fn check_path(path: &str) -> Result<&Path> {
+    if path.is_empty() {
+        Err(Error::invalid("`path` is empty; expected the name of a file"))
+    } else {
+        Ok(Path::new(path))
+    }
+}

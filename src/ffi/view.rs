@@ -1,0 +1,163 @@
+//! Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host frees each view.
+
+use super::arguments::{Grows, handle_out, reference, struct_out, text};
+use super::cells::{Change, OpenView, WorldCell};
+use super::entry::{entry, quiet_entry};
+use super::status::lahar_status;
+use super::world::lahar_world;
+use crate::error::{Error, Result, Status};
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// Access of a view: read. A step makes the view stale.
+pub const LAHAR_ACCESS_READ: i32 = 0;
+/// Access of a view: read and write. No step is possible while it is open.
+pub const LAHAR_ACCESS_WRITE: i32 = 1;
+
+/// A view of a field. Freed by lahar_view_free; keeps the world alive.
+pub struct lahar_view {
+    open: OpenView,
+    data: *mut f64,
+    components: usize,
+    count: usize,
+    stride: usize,
+    generation: i64,
+}
+
+/// Where the data of a view stand.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_view_info {
+    /// sizeof(lahar_view_info); set by the host.
+    pub struct_size: u32,
+    /// Number of components per particle.
+    pub components: i32,
+    /// Component c of particle k, in storage order, stands at data[c * stride + k]. Not to be written through a view with
+    /// LAHAR_ACCESS_READ. The memory stays mapped until the view is freed.
+    pub data: *mut f64,
+    /// Number of particles.
+    pub count: i64,
+    /// Distance of two components, in doubles.
+    pub stride: i64,
+    /// Grows whenever the storage order may have changed; equal numbers mean the same order.
+    pub generation: i64,
+}
+
+// SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers and raw pointers only.
+unsafe impl Grows for lahar_view_info {
+    const NAME: &'static str = "lahar_view_info";
+    const FIRST: usize = 40;
+}
+
+/// Opens a view of a field of a body.
+///
+/// While any view is open, bodies cannot be added or removed; while a write view is open, the world cannot step. What is
+/// written through a view is checked before the next step.
+/// `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
+/// `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND (body),
+/// LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name), LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED (write access).
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_body_view(
+    world: *mut lahar_world,
+    body: i64,
+    field: *const c_char,
+    access: i32,
+    view: *mut *mut lahar_view,
+) -> lahar_status {
+    entry("lahar_body_view", |scope| {
+        // SAFETY: the host passes NULL or a writable pointer, a live handle, a text.
+        let (place, cell, field) =
+            unsafe { (handle_out(view, "view")?, scope.world(world)?, text(field, "field")?) };
+        place.set(Box::into_raw(Box::new(open(&cell, body, field, access)?)));
+        Ok(())
+    })
+}
+
+fn open(cell: &Arc<WorldCell>, body: i64, field: &str, access: i32) -> Result<lahar_view> {
+    match access {
+        LAHAR_ACCESS_READ => open_read(cell, body, field),
+        LAHAR_ACCESS_WRITE => open_write(cell, body, field),
+        _ => Err(Error::invalid(format!("`access` is {access}; expected 0 (read) or 1 (write)"))),
+    }
+}
+
+fn open_read(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_view> {
+    cell.query_order(|w| {
+        let slice = w.field_data(body, field)?;
+        Ok(lahar_view {
+            open: OpenView::new(cell, false),
+            data: slice.data.as_ptr().cast_mut(),
+            components: slice.components,
+            count: slice.count,
+            stride: slice.stride,
+            generation: cell.generation(),
+        })
+    })
+}
+
+fn open_write(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_view> {
+    cell.query_order(|_| Ok(()))?;
+    cell.change(Change::Values, |w| {
+        let slice = w.field_data_mut(body, field)?;
+        Ok(lahar_view {
+            open: OpenView::new(cell, true),
+            data: slice.data.as_mut_ptr(),
+            components: slice.components,
+            count: slice.count,
+            stride: slice.stride,
+            generation: cell.generation(),
+        })
+    })
+}
+
+/// Where the data stand.
+///
+/// `info`: written; the host has set `struct_size`.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (a step has been made since),
+/// LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_view_data(
+    view: *const lahar_view,
+    info: *mut lahar_view_info,
+) -> lahar_status {
+    entry("lahar_view_data", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let view = unsafe { reference(view, "view") }?;
+        scope.attach_world(&view.open.cell);
+        // SAFETY: the host passes NULL or a writable struct.
+        let info = unsafe { struct_out(info, "info") }?;
+        info.set(view.open.cell.query(|_| view_info(view))?);
+        Ok(())
+    })
+}
+
+fn view_info(view: &lahar_view) -> Result<lahar_view_info> {
+    if !view.open.is_write() && view.generation != view.open.cell.generation() {
+        let text = "the world has stepped since the view was opened; free it and open a new one";
+        return Err(Error::new(Status::ViewStale, text));
+    }
+    Ok(lahar_view_info {
+        struct_size: 0,
+        components: view.components as i32,
+        data: view.data,
+        count: view.count as i64,
+        stride: view.stride as i64,
+        generation: view.generation,
+    })
+}
+
+/// Closes the view. Its memory must not be used any more. NULL is ignored.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_view_free(view: *mut lahar_view) {
+    quiet_entry(|| {
+        if !view.is_null() {
+            // SAFETY: the handle came from Box::into_raw in lahar_body_view and is freed once.
+            drop(unsafe { Box::from_raw(view) });
+        }
+    });
+}

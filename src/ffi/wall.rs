@@ -1,0 +1,136 @@
+//! Walls: planes on the grid at any position along an axis, named by ids that are never used again.
+
+use super::arguments::{Grows, initialise, optional_out, out, read_struct};
+use super::cells::Change;
+use super::entry::entry;
+use super::status::lahar_status;
+use super::world::lahar_world;
+use crate::boundary::{Wall, WallKind};
+use crate::error::{Error, Result};
+
+/// Wall: nothing moves at it.
+pub const LAHAR_WALL_STICKY: i32 = 0;
+/// Wall: no motion across it, free motion along it.
+pub const LAHAR_WALL_SLIP: i32 = 1;
+/// Wall: as slip, but material may leave it.
+pub const LAHAR_WALL_SEPARATING: i32 = 2;
+/// Wall: as separating, with Coulomb friction.
+pub const LAHAR_WALL_FRICTION: i32 = 3;
+
+// The numbers are the engine's.
+const _: () = {
+    assert!(LAHAR_WALL_STICKY == WallKind::Sticky as i32);
+    assert!(LAHAR_WALL_SLIP == WallKind::Slip as i32);
+    assert!(LAHAR_WALL_SEPARATING == WallKind::Separating as i32);
+    assert!(LAHAR_WALL_FRICTION == WallKind::Friction as i32);
+};
+
+/// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_wall {
+    /// sizeof(lahar_wall); set by lahar_wall_init.
+    pub struct_size: u32,
+    /// Axis of the normal: 0 x, 1 y, 2 z; default 0.
+    pub axis: i32,
+    /// 1: the material is at larger coordinates (default); -1: at smaller.
+    pub side: i32,
+    /// One of LAHAR_WALL_*; default LAHAR_WALL_STICKY.
+    pub kind: i32,
+    /// Coordinate of the plane [m]; default 0.
+    pub position: f64,
+    /// Coefficient of friction of LAHAR_WALL_FRICTION [-], >= 0; default 0.
+    pub friction: f64,
+}
+
+// SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers only.
+unsafe impl Grows for lahar_wall {
+    const NAME: &'static str = "lahar_wall";
+    const FIRST: usize = 32;
+}
+
+/// Fills the struct with its defaults.
+///
+/// `size`: sizeof(lahar_wall).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> lahar_status {
+    entry("lahar_wall_init", |_| {
+        let default = lahar_wall {
+            struct_size: 0,
+            axis: 0,
+            side: 1,
+            kind: LAHAR_WALL_STICKY,
+            position: 0.0,
+            friction: 0.0,
+        };
+        // SAFETY: the host passes NULL or `size` writable bytes.
+        unsafe { initialise((wall, "wall"), size, default) }
+    })
+}
+
+/// Adds a wall.
+///
+/// `wall`: copied. `id`: gets the id of the wall; may be NULL.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_wall_add(
+    world: *mut lahar_world,
+    wall: *const lahar_wall,
+    id: *mut i64,
+) -> lahar_status {
+    entry("lahar_wall_add", |scope| {
+        // SAFETY: the host passes NULL or a live handle, a filled struct, a writable integer.
+        let (cell, wall, id) =
+            unsafe { (scope.world(world)?, read_struct(wall, "wall")?, optional_out(id, "id")?) };
+        let wall = to_wall(&wall)?;
+        let added = cell.change(Change::Values, |w| w.add_wall(&wall))?;
+        id.inspect(|id| id.set(added));
+        Ok(())
+    })
+}
+
+fn to_wall(wall: &lahar_wall) -> Result<Wall> {
+    let axis = usize::try_from(wall.axis)
+        .map_err(|_| Error::invalid(format!("`axis` is {}; expected 0, 1 or 2", wall.axis)))?;
+    let kind = WallKind::from_i32(wall.kind)?;
+    Ok(Wall { axis, side: wall.side, position: wall.position, kind, friction: wall.friction })
+}
+
+/// Removes a wall. Its id is not used again.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_wall_remove(world: *mut lahar_world, id: i64) -> lahar_status {
+    entry("lahar_wall_remove", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.world(world) }?;
+        cell.change(Change::Values, |w| w.remove_wall(id))
+    })
+}
+
+/// Force of a wall on the material in the last step.
+///
+/// `force`: written [N], shape [3].
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+///
+/// cbindgen:ptrs-as-arrays=[[force; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_wall_reaction(
+    world: *const lahar_world,
+    id: i64,
+    force: *mut f64,
+) -> lahar_status {
+    entry("lahar_wall_reaction", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or three writable doubles.
+        let (cell, force) =
+            unsafe { (scope.world(world)?, out(force.cast::<[f64; 3]>(), "force")?) };
+        force.set(cell.query(|w| w.wall_reaction(id))?);
+        Ok(())
+    })
+}

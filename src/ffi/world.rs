@@ -1,0 +1,374 @@
+//! Worlds: a background grid with its bodies and walls, and time.
+//!
+//! Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a result. Any consistent
+//! units may be used; those named are SI. In two dimensions a world is plane strain and 1 m thick.
+
+use super::arguments::{Grows, array3, handle_out, initialise, optional_out, out, read_struct};
+use super::cells::{Change, Steps, WorldCell};
+use super::context::lahar_context;
+use super::entry::{entry, quiet_entry};
+use super::status::lahar_status;
+use crate::error::{Error, Result};
+use crate::grid::GridPolicy;
+use crate::shape::ShapeKind;
+use crate::step::StepOrder;
+use crate::transfer::TransferKind;
+use crate::world::World;
+use crate::world::options::Options;
+use std::sync::Arc;
+
+/// A background grid with its bodies and walls. Freed by lahar_world_free; views keep it alive.
+pub struct lahar_world {
+    pub(super) cell: Arc<WorldCell>,
+}
+
+/// Shape functions: linear.
+pub const LAHAR_SHAPE_LINEAR: i32 = 0;
+/// Shape functions: quadratic B-splines (default).
+pub const LAHAR_SHAPE_QUADRATIC_BSPLINE: i32 = 1;
+/// Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
+pub const LAHAR_TRANSFER_PIC_FLIP: i32 = 0;
+/// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
+pub const LAHAR_TRANSFER_APIC: i32 = 1;
+/// Order of a step: stresses before the grid moves.
+pub const LAHAR_ORDER_USL: i32 = 0;
+/// Order of a step: stresses last, from the velocities of the moved particles mapped again (default).
+pub const LAHAR_ORDER_MUSL: i32 = 1;
+/// Grid: blocks come and go with the particles (default).
+pub const LAHAR_GRID_DYNAMIC: i32 = 0;
+/// Grid: blocks come with the particles and stay.
+pub const LAHAR_GRID_GROW_ONLY: i32 = 1;
+/// Grid: the blocks of a fixed box; a particle that leaves it is an error.
+pub const LAHAR_GRID_STATIC: i32 = 2;
+
+// The numbers are the engine's.
+const _: () = {
+    assert!(LAHAR_SHAPE_LINEAR == ShapeKind::Linear as i32);
+    assert!(LAHAR_SHAPE_QUADRATIC_BSPLINE == ShapeKind::QuadraticBspline as i32);
+    assert!(LAHAR_TRANSFER_PIC_FLIP == TransferKind::PicFlip as i32);
+    assert!(LAHAR_TRANSFER_APIC == TransferKind::Apic as i32);
+    assert!(LAHAR_ORDER_USL == StepOrder::Usl as i32);
+    assert!(LAHAR_ORDER_MUSL == StepOrder::Musl as i32);
+    assert!(LAHAR_GRID_DYNAMIC == GridPolicy::Dynamic as i32);
+    assert!(LAHAR_GRID_GROW_ONLY == GridPolicy::GrowOnly as i32);
+    assert!(LAHAR_GRID_STATIC == GridPolicy::Static as i32);
+};
+
+/// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what else is wanted.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_world_options {
+    /// sizeof(lahar_world_options); set by lahar_world_options_init.
+    pub struct_size: u32,
+    /// 2 (plane strain) or 3; default 3.
+    pub dimension: i32,
+    /// One of LAHAR_SHAPE_*.
+    pub shape: i32,
+    /// One of LAHAR_TRANSFER_*.
+    pub transfer: i32,
+    /// One of LAHAR_ORDER_*.
+    pub order: i32,
+    /// One of LAHAR_GRID_*.
+    pub grid_policy: i32,
+    /// Distance of the grid's nodes [m], > 0; has no default.
+    pub spacing: f64,
+    /// Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
+    pub origin: [f64; 3],
+    /// Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default), infinity is PIC.
+    pub pic_rate: f64,
+    /// Courant number of the stable time step [-], in (0, 1]; default 0.4.
+    pub cfl: f64,
+    /// Gravity [m/s^2], shape [3]; default 0.
+    pub gravity: [f64; 3],
+    /// Local non-viscous damping [-], in [0, 1); default 0.
+    pub damping: f64,
+    /// Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    pub box_min: [f64; 3],
+    /// Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    pub box_max: [f64; 3],
+}
+
+// SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers only.
+unsafe impl Grows for lahar_world_options {
+    const NAME: &'static str = "lahar_world_options";
+    const FIRST: usize = 152;
+}
+
+/// Fills the options with their defaults.
+///
+/// `size`: sizeof(lahar_world_options).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_options_init(
+    options: *mut lahar_world_options,
+    size: i64,
+) -> lahar_status {
+    entry("lahar_world_options_init", |_| {
+        // SAFETY: the host passes NULL or `size` writable bytes.
+        unsafe { initialise((options, "options"), size, from_options(&Options::default())) }
+    })
+}
+
+fn from_options(options: &Options) -> lahar_world_options {
+    lahar_world_options {
+        struct_size: 0,
+        dimension: options.dimension as i32,
+        shape: options.shape as i32,
+        transfer: options.transfer as i32,
+        order: options.order as i32,
+        grid_policy: options.grid_policy as i32,
+        spacing: options.spacing,
+        origin: options.origin,
+        pic_rate: options.pic_rate,
+        cfl: options.cfl,
+        gravity: options.gravity,
+        damping: options.damping,
+        box_min: options.box_min,
+        box_max: options.box_max,
+    }
+}
+
+fn to_options(options: &lahar_world_options) -> Result<Options> {
+    let dimension = match options.dimension {
+        2 => 2,
+        3 => 3,
+        other => return Err(Error::invalid(format!("`dimension` is {other}; expected 2 or 3"))),
+    };
+    let vector = |mut v: [f64; 3]| {
+        v[dimension..].fill(0.0);
+        v
+    };
+    Ok(Options {
+        dimension,
+        spacing: options.spacing,
+        origin: vector(options.origin),
+        shape: ShapeKind::from_i32(options.shape)?,
+        transfer: TransferKind::from_i32(options.transfer)?,
+        pic_rate: options.pic_rate,
+        order: StepOrder::from_i32(options.order)?,
+        cfl: options.cfl,
+        gravity: vector(options.gravity),
+        damping: options.damping,
+        grid_policy: GridPolicy::from_i32(options.grid_policy)?,
+        box_min: vector(options.box_min),
+        box_max: vector(options.box_max),
+    })
+}
+
+/// Makes an empty world at time 0.
+///
+/// `options`: copied.
+/// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+/// LAHAR_ERROR_UNSUPPORTED (the combination; the message tells the nearest that is supported).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_create(
+    context: *mut lahar_context,
+    options: *const lahar_world_options,
+    world: *mut *mut lahar_world,
+) -> lahar_status {
+    entry("lahar_world_create", |scope| {
+        // SAFETY: the host passes NULL or a writable pointer, a live handle, a filled struct.
+        let (place, context, options) = unsafe {
+            (handle_out(world, "world")?, scope.context(context)?, read_struct(options, "options")?)
+        };
+        let world = World::new(&context.context, &to_options(&options)?)?;
+        place.set(Box::into_raw(Box::new(lahar_world { cell: WorldCell::new(context, world) })));
+        Ok(())
+    })
+}
+
+/// Frees the handle. The memory goes when the last view is freed too. NULL is ignored.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_free(world: *mut lahar_world) {
+    quiet_entry(|| {
+        if !world.is_null() {
+            // SAFETY: the handle came from Box::into_raw in lahar_world_create and is freed once.
+            drop(unsafe { Box::from_raw(world) });
+        }
+    });
+}
+
+/// Sets gravity from the next step on.
+///
+/// `gravity`: [m/s^2], shape [3], finite.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Thread: owner
+///
+/// cbindgen:ptrs-as-arrays=[[gravity; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_set_gravity(
+    world: *mut lahar_world,
+    gravity: *const f64,
+) -> lahar_status {
+    entry("lahar_world_set_gravity", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or three doubles.
+        let (cell, gravity) = unsafe { (scope.world(world)?, array3(gravity, "gravity")?) };
+        cell.change(Change::Values, |w| w.set_gravity(cell.vector(gravity)))
+    })
+}
+
+/// Sets the local non-viscous damping from the next step on.
+///
+/// `damping`: [-], in [0, 1).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_set_damping(
+    world: *mut lahar_world,
+    damping: f64,
+) -> lahar_status {
+    entry("lahar_world_set_damping", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.world(world) }?;
+        cell.change(Change::Values, |w| w.set_damping(damping))
+    })
+}
+
+/// One step of the given length.
+///
+/// `dt`: [s], > 0 and not above lahar_world_stable_dt.
+/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt), LAHAR_ERROR_STEP_TOO_LARGE (the
+/// stable step is in `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote),
+/// LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
+/// lahar_last_error_info tells the body, the particle, the step and the time.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> lahar_status {
+    entry("lahar_world_step", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.world(world) }?;
+        cell.change(Change::Step, |w| w.step(Some(dt)))?;
+        Ok(())
+    })
+}
+
+/// One step of the stable length.
+///
+/// `dt`: gets the length of the step [s]; may be NULL.
+/// Errors: as lahar_world_step.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_step_auto(
+    world: *mut lahar_world,
+    dt: *mut f64,
+) -> lahar_status {
+    entry("lahar_world_step_auto", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable double.
+        let (cell, dt) = unsafe { (scope.world(world)?, optional_out(dt, "dt")?) };
+        let used = cell.change(Change::Step, |w| w.step(None))?;
+        dt.inspect(|dt| dt.set(used));
+        Ok(())
+    })
+}
+
+/// Steps of the stable length until a time is reached; the last two are shortened to hit it exactly.
+///
+/// `until`: time to reach [s], not before the present one.
+/// `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
+/// `steps_done`: gets the number of committed steps, on failure too; may be NULL.
+/// `time`: gets the time that was reached [s], on failure too; may be NULL.
+/// Errors: as lahar_world_step; a positive status means that no partial step was committed.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_advance(
+    world: *mut lahar_world,
+    until: f64,
+    max_steps: i64,
+    steps_done: *mut i64,
+    time: *mut f64,
+) -> lahar_status {
+    entry("lahar_world_advance", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or writable numbers.
+        let (cell, steps_out, time_out) = unsafe {
+            (
+                scope.world(world)?,
+                optional_out(steps_done, "steps_done")?,
+                optional_out(time, "time")?,
+            )
+        };
+        let (done, now, result) = advance(&cell, until, max_steps)?;
+        steps_out.inspect(|steps| steps.set(done));
+        time_out.inspect(|time| time.set(now));
+        result
+    })
+}
+
+fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
+    cell.advance(|w| {
+        let (done, result) = w.advance(until, max_steps);
+        (done, w.time(), result)
+    })
+}
+
+/// Longest step that is stable now [s]: infinity without particles.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_stable_dt(
+    world: *const lahar_world,
+    dt: *mut f64,
+) -> lahar_status {
+    entry("lahar_world_stable_dt", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable double.
+        let (cell, dt) = unsafe { (scope.world(world)?, out(dt, "dt")?) };
+        dt.set(cell.query(World::stable_dt)?);
+        Ok(())
+    })
+}
+
+/// Time of the world [s].
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_time(
+    world: *const lahar_world,
+    time: *mut f64,
+) -> lahar_status {
+    entry("lahar_world_time", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable double.
+        let (cell, time) = unsafe { (scope.world(world)?, out(time, "time")?) };
+        time.set(cell.query(|w| Ok(w.time()))?);
+        Ok(())
+    })
+}
+
+/// Number of committed steps.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_step_count(
+    world: *const lahar_world,
+    steps: *mut i64,
+) -> lahar_status {
+    entry("lahar_world_step_count", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
+        let (cell, steps) = unsafe { (scope.world(world)?, out(steps, "steps")?) };
+        steps.set(cell.query(|w| Ok(w.step_count()))?);
+        Ok(())
+    })
+}
+
+/// Length of the last committed step [s]; 0 before the first.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+/// Thread: callback-ok
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_world_last_dt(
+    world: *const lahar_world,
+    dt: *mut f64,
+) -> lahar_status {
+    entry("lahar_world_last_dt", |scope| {
+        // SAFETY: the host passes NULL or a live handle, and NULL or a writable double.
+        let (cell, dt) = unsafe { (scope.world(world)?, out(dt, "dt")?) };
+        dt.set(cell.query(|w| Ok(w.last_dt()))?);
+        Ok(())
+    })
+}

@@ -1,0 +1,64 @@
+//! Integer coordinates of blocks and their order.
+
+use std::cmp::Ordering;
+
+/// Nodes along the edge of a block.
+pub const EDGE: usize = 4;
+
+/// Integer coordinates of a block: the block holds the nodes `4 * key .. 4 * key + 3` along each axis.
+pub type Key<const D: usize> = [i32; D];
+
+/// Nodes of a block.
+pub const fn block_nodes(dimension: usize) -> usize {
+    EDGE.pow(dimension as u32)
+}
+
+/// Order of keys along the Morton curve, found without interleaving bits: the axis whose coordinates differ in the
+/// highest bit decides; the first axis wins ties. Flipping the sign bit makes negative coordinates ordinary.
+pub fn morton_order<const D: usize>(a: &Key<D>, b: &Key<D>) -> Ordering {
+    let flip = |v: i32| (v as u32) ^ 0x8000_0000;
+    let (mut axis, mut highest) = (0, 0u32);
+    for d in 0..D {
+        let difference = flip(a[d]) ^ flip(b[d]);
+        if highest < difference && highest < (highest ^ difference) {
+            axis = d;
+            highest = difference;
+        }
+    }
+    flip(a[axis]).cmp(&flip(b[axis]))
+}
+
+/// Block and position in it of a node along one axis.
+pub fn split_node(node: i64) -> (i64, usize) {
+    (node.div_euclid(EDGE as i64), node.rem_euclid(EDGE as i64) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The Morton code of small non-negative coordinates by interleaving.
+    fn interleaved(key: Key<3>) -> u64 {
+        (0..30).fold(0, |code, bit| {
+            (0..3).fold(code, |code, d| {
+                code | (((key[d] as u64 >> (bit / 3)) & 1) << bit) * u64::from(bit % 3 == 2 - d as u64)
+            })
+        })
+    }
+
+    #[test]
+    fn the_order_is_that_of_interleaved_bits() {
+        let mut keys: Vec<Key<3>> = (0..512).map(|i| [i / 64, i / 8 % 8, i % 8]).collect();
+        keys.reverse();
+        keys.sort_by(morton_order);
+        assert!(keys.windows(2).all(|w| interleaved(w[0]) < interleaved(w[1])));
+    }
+
+    #[test]
+    fn negative_keys_come_before_positive_ones() {
+        assert_eq!(morton_order(&[-1, 5], &[0, -5]), Ordering::Less);
+        assert_eq!(morton_order(&[3, -7], &[3, -7]), Ordering::Equal);
+        assert_eq!(split_node(-1), (-1, 3));
+        assert_eq!(split_node(7), (1, 3));
+    }
+}

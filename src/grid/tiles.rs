@@ -1,0 +1,140 @@
+//! Tiles: the private grid patch into which the particles of a block scatter, and the copy from which they gather.
+//!
+//! A tile covers its block and the first N − 1 node layers of the next blocks: (4 + N − 1)^D nodes. After the scatter each
+//! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
+
+use super::{EDGE, Grid, Lanes, NONE};
+
+/// A node of a tile: [m, mv] and [–, f] on the way to the grid, R0 and R1 on the way back.
+pub type TileNode = [Lanes; 2];
+
+/// Particles of one body that stand in one block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// Position of the block.
+    pub block: u32,
+    /// Position of the body in the world.
+    pub body: u32,
+    /// First particle.
+    pub first: u32,
+    /// One past the last particle.
+    pub end: u32,
+}
+
+/// Most particles that scatter into one tile; fuller blocks get several.
+const TILE_PARTICLES: u32 = 2048;
+
+/// All tiles of a grid.
+#[derive(Debug, Default)]
+pub struct Tiles {
+    /// Nodes along the edge of a tile.
+    pub edge: usize,
+    /// Runs in the order of blocks, then bodies, cut at the size of a tile.
+    pub runs: Vec<Run>,
+    /// For each tile its runs, as a range of `runs`.
+    pub tiles: Vec<(u32, u32)>,
+    /// For each block its tiles, as a range of `tiles`.
+    pub of_block: Vec<(u32, u32)>,
+    /// Node records of all tiles.
+    pub nodes: Vec<TileNode>,
+}
+
+impl Tiles {
+    /// Tiles for stencils of `shape_nodes` nodes an axis.
+    pub fn new(shape_nodes: usize) -> Self {
+        Self { edge: EDGE + shape_nodes - 1, ..Self::default() }
+    }
+
+    /// Deals the runs of all bodies out to tiles. `blocks` is the number of active blocks, `dimension` the number of axes.
+    pub fn assign(&mut self, runs: impl Iterator<Item = Run>, blocks: usize, dimension: usize) {
+        self.runs.clear();
+        for mut run in runs {
+            while run.end - run.first > TILE_PARTICLES {
+                self.runs.push(Run { end: run.first + TILE_PARTICLES, ..run });
+                run.first += TILE_PARTICLES;
+            }
+            self.runs.push(run);
+        }
+        self.runs.sort_unstable_by_key(|r| (r.block, r.body, r.first));
+        self.tiles.clear();
+        self.of_block.clear();
+        self.of_block.resize(blocks, (0, 0));
+        let (mut block, mut load) = (NONE, 0);
+        for (r, run) in self.runs.iter().enumerate() {
+            let r = r as u32;
+            let size = run.end - run.first;
+            if run.block != block || load + size > TILE_PARTICLES {
+                let tile = self.tiles.len() as u32;
+                let of_block = &mut self.of_block[run.block as usize];
+                *of_block = (if run.block == block { of_block.0 } else { tile }, tile + 1);
+                self.tiles.push((r, r));
+                (block, load) = (run.block, 0);
+            }
+            load += size;
+            if let Some(tile) = self.tiles.last_mut() {
+                tile.1 = r + 1;
+            }
+        }
+        let nodes = self.tiles.len() * self.tile_nodes(dimension);
+        if nodes > self.nodes.len() || 4 * nodes < self.nodes.len() {
+            self.nodes.clear();
+            self.nodes.shrink_to(2 * nodes);
+            self.nodes.resize(nodes, [[0.0; 4]; 2]);
+        }
+    }
+
+    /// Nodes of a tile.
+    pub fn tile_nodes(&self, dimension: usize) -> usize {
+        self.edge.pow(dimension as u32)
+    }
+
+    /// The nodes of tile t.
+    pub fn tile(&self, t: usize, dimension: usize) -> &[TileNode] {
+        let n = self.tile_nodes(dimension);
+        &self.nodes[t * n..(t + 1) * n]
+    }
+
+    /// Memory [bytes].
+    pub fn bytes(&self) -> usize {
+        self.nodes.capacity() * size_of::<TileNode>()
+            + self.runs.capacity() * size_of::<Run>()
+            + (self.tiles.capacity() + self.of_block.capacity()) * size_of::<(u32, u32)>()
+    }
+}
+
+/// Visits the rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in
+/// the block, and the number of nodes.
+#[inline(always)]
+pub fn shared_rows<const D: usize>(
+    edge: usize,
+    corner: usize,
+    mut visit: impl FnMut(usize, usize, usize),
+) {
+    let part = |d: usize| if corner >> d & 1 == 1 { (EDGE, edge - EDGE) } else { (0, EDGE) };
+    let (from, len) = part(D - 1);
+    let (x, nx) = part(0);
+    for i in 0..nx {
+        if D == 2 {
+            visit((x + i) * edge + from, i * EDGE, len);
+        } else {
+            let (y, ny) = part(1);
+            for j in 0..ny {
+                visit(((x + i) * edge + y + j) * edge + from, (i * EDGE + j) * EDGE, len);
+            }
+        }
+    }
+}
+
+/// Copies R0 and R1 of the nodes that the particles of `block` see into a tile.
+pub fn load_tile<const D: usize>(grid: &Grid<D>, block: u32, edge: usize, tile: &mut [TileNode]) {
+    for corner in 0..1 << D {
+        let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
+        shared_rows::<D>(edge, corner, |t, b, len| {
+            let r0 = &grid.velocity[source + b..][..len];
+            let r1 = &grid.increment[source + b..][..len];
+            for (node, (r0, r1)) in tile[t..t + len].iter_mut().zip(r0.iter().zip(r1)) {
+                *node = [*r0, *r1];
+            }
+        });
+    }
+}

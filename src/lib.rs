@@ -1,0 +1,29 @@
+//! lahar: an embeddable material point method engine.
+//!
+//! Bodies are clouds of particles that carry mass, momentum, stress and history. In every step the particles give mass and
+//! momentum to a background grid, the equation of motion is solved at its nodes, and the particles take velocities and velocity
+//! gradients back; constitutive models, loaded as plugins, turn the gradients into stresses. The grid is sparse: blocks
+//! of nodes appear where particles are and vanish behind them, so that the domain is unbounded.
+//!
+//! # Map
+//!
+//! * [`step`] is the method, one file a stage; [`step::naive`] the same as the textbook writes it.
+//! * [`particles`], [`grid`]: the data. [`shape`], [`transfer`], [`boundary`]: the choices.
+//! * [`material`]: what the engine knows of a constitutive model; `plugin` loads them.
+//! * [`world`] owns everything; [`context`] owns threads, log and plugins; `ffi` is the C ABI, documented in `lahar.h`.
+#![deny(missing_docs)]
+
+pub mod boundary;
+pub mod context;
+pub mod error;
+mod ffi;
+pub mod grid;
+pub mod material;
+pub mod output;
+pub mod particles;
+mod plugin;
+pub mod shape;
+pub mod step;
+pub mod tensor;
+pub mod transfer;
+pub mod world;

@@ -1,0 +1,100 @@
+//! Runs of particles that threads work on.
+
+use super::Layout;
+
+/// Particles in a chunk: its columns and its scratch fit the second-level cache.
+pub const CHUNK: usize = 256;
+
+/// Most components that a body can have: those of the engine and 128 of a model's state.
+pub const MAX_COMPONENTS: usize = 168;
+
+/// The columns of a run of particles.
+pub struct ChunkMut<'a> {
+    /// Where each field starts among the columns.
+    pub layout: Layout,
+    /// Place of the first particle in its body.
+    pub first: usize,
+    /// Number of particles.
+    pub len: usize,
+    columns: [&'a mut [f64]; MAX_COMPONENTS],
+}
+
+impl<'a> ChunkMut<'a> {
+    /// The first `len` particles of a table with the given stride.
+    pub fn new(layout: Layout, len: usize, data: &'a mut [f64], stride: usize) -> Self {
+        let mut columns = std::array::from_fn(|_| Default::default());
+        if stride > 0 {
+            for (to, column) in columns.iter_mut().zip(data.chunks_exact_mut(stride)) {
+                *to = &mut column[..len];
+            }
+        }
+        Self { layout, first: 0, len, columns }
+    }
+
+    /// One component of all particles of the run.
+    #[inline(always)]
+    pub fn column(&self, component: usize) -> &[f64] {
+        self.columns[component]
+    }
+
+    /// One component of all particles of the run, to write.
+    #[inline(always)]
+    pub fn column_mut(&mut self, component: usize) -> &mut [f64] {
+        self.columns[component]
+    }
+
+    /// `N` components of particle k.
+    #[inline(always)]
+    pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
+        std::array::from_fn(|c| self.columns[first + c][k])
+    }
+
+    /// Sets `N` components of particle k.
+    #[inline(always)]
+    pub fn set<const N: usize>(&mut self, first: usize, k: usize, values: [f64; N]) {
+        for c in 0..N {
+            self.columns[first + c][k] = values[c];
+        }
+    }
+
+    /// The run in two, the first part with `mid` particles.
+    fn split(mut self, mid: usize) -> (Self, Self) {
+        let n = self.layout.components();
+        let mut right = std::array::from_fn(|_| Default::default());
+        for c in 0..n {
+            let (a, b) = std::mem::take(&mut self.columns[c]).split_at_mut(mid);
+            self.columns[c] = a;
+            right[c] = b;
+        }
+        let right = Self {
+            layout: self.layout,
+            first: self.first + mid,
+            len: self.len - mid,
+            columns: right,
+        };
+        self.len = mid;
+        (self, right)
+    }
+}
+
+/// Calls `work` on every chunk of at most [`CHUNK`] particles and folds the results from left to right, so that neither the
+/// chunks nor the order of the fold depend on the number of threads.
+pub fn for_each_chunk<R: Send>(
+    chunk: ChunkMut<'_>,
+    parallel: bool,
+    work: &(impl Fn(ChunkMut<'_>) -> R + Sync),
+    fold: &(impl Fn(R, R) -> R + Sync),
+) -> R {
+    if chunk.len <= CHUNK {
+        return work(chunk);
+    }
+    let mid = (chunk.len / 2).next_multiple_of(CHUNK);
+    let (left, right) = chunk.split(mid);
+    let run = |part| for_each_chunk(part, parallel, work, fold);
+    let (a, b) = if parallel {
+        rayon::join(|| run(left), || run(right))
+    } else {
+        (run(left), run(right))
+    };
+    fold(a, b)
+}

@@ -1,0 +1,135 @@
+//! The registry of particle fields: name, unit and shape of everything a particle carries.
+//!
+//! Writers, views, copies and documentation iterate it; the state variables of a body's model follow behind.
+
+use std::ffi::CStr;
+
+/// What hosts may know of a field.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldInfo {
+    /// Name.
+    pub name: &'static CStr,
+    /// SI unit.
+    pub unit: &'static CStr,
+    /// One sentence.
+    pub description: &'static CStr,
+    /// Number of components.
+    pub components: usize,
+    /// Whether hosts may write it.
+    pub writable: bool,
+}
+
+/// Where each field starts among the columns of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Position [m], D components.
+    pub position: usize,
+    /// Velocity [m/s], D components.
+    pub velocity: usize,
+    /// Mass [kg].
+    pub mass: usize,
+    /// Current volume [m³].
+    pub volume: usize,
+    /// Cauchy stress [Pa], 6 components.
+    pub stress: usize,
+    /// Strain energy [J].
+    pub strain_energy: usize,
+    /// Affine velocity matrix of APIC [1/s], D·D components, row-major; none in other transfers.
+    pub affine: usize,
+    /// Deformation gradient [–], 9 components, row-major; none unless the model asks for it.
+    pub deformation_gradient: usize,
+    /// State variables of the model.
+    pub state: usize,
+    end: usize,
+}
+
+impl Layout {
+    /// Columns of a body in `dimension` axes.
+    pub fn new(dimension: usize, affine: bool, gradient: bool, state: usize) -> Self {
+        let mut end = 0;
+        let mut take = |components: usize| {
+            end += components;
+            end - components
+        };
+        let mut layout = Self {
+            position: take(dimension),
+            velocity: take(dimension),
+            mass: take(1),
+            volume: take(1),
+            stress: take(6),
+            strain_energy: take(1),
+            affine: take(if affine { dimension * dimension } else { 0 }),
+            deformation_gradient: take(if gradient { 9 } else { 0 }),
+            state: take(state),
+            end: 0,
+        };
+        layout.end = end;
+        layout
+    }
+
+    /// Number of columns.
+    pub fn components(&self) -> usize {
+        self.end
+    }
+
+    /// Number of columns of the model's state.
+    pub fn state_components(&self) -> usize {
+        self.end - self.state
+    }
+
+    /// The engine's fields with their first columns, in the order of enumeration.
+    pub fn fields(&self, dimension: usize) -> Vec<(FieldInfo, usize)> {
+        let field = |name, unit, description, first, components, writable| {
+            (FieldInfo { name, unit, description, components, writable }, first)
+        };
+        let mut list = vec![
+            field(c"position", c"m", c"Position", self.position, dimension, true),
+            field(c"velocity", c"m/s", c"Velocity", self.velocity, dimension, true),
+            field(c"mass", c"kg", c"Mass", self.mass, 1, true),
+            field(c"volume", c"m^3", c"Current volume", self.volume, 1, true),
+            field(
+                c"stress",
+                c"Pa",
+                c"Cauchy stress xx, yy, zz, xy, yz, zx, tension positive",
+                self.stress,
+                6,
+                true,
+            ),
+            field(
+                c"strain_energy",
+                c"J",
+                c"Work of the stress on the strain since the start",
+                self.strain_energy,
+                1,
+                true,
+            ),
+        ];
+        let affine = self.deformation_gradient - self.affine;
+        if affine > 0 {
+            let text = c"Affine velocity matrix of APIC, row-major";
+            list.push(field(c"affine", c"1/s", text, self.affine, affine, true));
+        }
+        if self.state > self.deformation_gradient {
+            let (text, first) = (c"Deformation gradient, row-major", self.deformation_gradient);
+            list.push(field(c"deformation_gradient", c"-", text, first, 9, true));
+        }
+        list
+    }
+}
+
+/// Fields of a node of the grid after a step.
+pub const NODE_FIELDS: fn(usize) -> [FieldInfo; 4] = |dimension| {
+    let field = |name, unit, description, components| FieldInfo {
+        name,
+        unit,
+        description,
+        components,
+        writable: false,
+    };
+    [
+        field(c"mass", c"kg", c"Mass", 1),
+        field(c"velocity", c"m/s", c"Velocity at the end of the step", dimension),
+        field(c"momentum", c"kg*m/s", c"Momentum at the end of the step", dimension),
+        field(c"force", c"N", c"Force of the particles' stresses on the node", dimension),
+    ]
+};

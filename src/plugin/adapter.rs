@@ -1,0 +1,279 @@
+//! Calls the functions of a model: builds the C batch from the safe one and turns return values into errors.
+
+use super::host::take_error;
+use crate::error::{Error, Result, Status};
+use crate::material::{Input, Kinematics, Model, StressBatch};
+use lahar_plugin_abi::*;
+use std::ffi::{CStr, c_char, c_void};
+use std::ptr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// `create`, `destroy` and `check` run one at a time in the whole process.
+static LIFECYCLE: Mutex<()> = Mutex::new(());
+
+/// More inputs than there are kinds; the handshake refuses duplicates.
+const INPUTS: usize = 8;
+
+type Call = unsafe extern "C" fn(*const c_void, *const lahar_stress_batch) -> i32;
+
+/// The functions of a model, checked by the handshake.
+pub(crate) struct Functions {
+    pub(super) create: unsafe extern "C" fn(*const f64, i64, *mut *mut c_void) -> i32,
+    pub(super) destroy: unsafe extern "C" fn(*mut c_void),
+    pub(super) check: Option<unsafe extern "C" fn(*const f64, i64, *mut c_char, i64) -> i32>,
+    pub(super) init_state: Option<Call>,
+    pub(super) update: Call,
+    pub(super) wave_speed: Call,
+    /// Serialises the calls of a plugin that has a model which is not thread-safe.
+    pub(super) serial: Option<&'static Mutex<()>>,
+}
+
+/// An instance of a model.
+pub(crate) struct Instance {
+    model: &'static Model,
+    pointer: *mut c_void,
+}
+
+// SAFETY: the ABI lets any thread call an instance; `serial` keeps threads apart where the model asks for it, and
+// `LIFECYCLE` does for creation and destruction.
+unsafe impl Send for Instance {}
+// SAFETY: as above.
+unsafe impl Sync for Instance {}
+
+impl Instance {
+    /// Asks the model whether the values (one per parameter) go together and makes an instance.
+    /// Errors: [`Status::OutOfBounds`] with the model's text.
+    pub(crate) fn new(model: &'static Model, values: &[f64]) -> Result<Self> {
+        let _one_at_a_time = LIFECYCLE.lock().unwrap_or_else(PoisonError::into_inner);
+        take_error();
+        let refused = |text: Option<String>| {
+            let text = text.unwrap_or_else(|| "without saying why".into());
+            let text = format!("`{}` refuses its parameter values: {text}", model.name);
+            Error::new(Status::OutOfBounds, text)
+        };
+        let count = values.len() as i64;
+        if let Some(check) = model.functions.check {
+            let mut text = [0_u8; 1024];
+            let capacity = text.len() as i64;
+            // SAFETY: `values` has `count` values and `text` has `capacity` bytes.
+            let code = unsafe { check(values.as_ptr(), count, text.as_mut_ptr().cast(), capacity) };
+            if code != LAHAR_PLUGIN_OK {
+                let text = CStr::from_bytes_until_nul(&text).unwrap_or_default().to_string_lossy();
+                let fallback = take_error();
+                return Err(refused(if text.is_empty() { fallback } else { Some(text.into()) }));
+            }
+        }
+        let mut pointer = ptr::null_mut();
+        // SAFETY: `values` has `count` values and `pointer` is a place for one pointer.
+        let code = unsafe { (model.functions.create)(values.as_ptr(), count, &mut pointer) };
+        if code != LAHAR_PLUGIN_OK {
+            return Err(refused(take_error()));
+        }
+        Ok(Self { model, pointer })
+    }
+
+    pub(crate) fn model(&self) -> &'static Model {
+        self.model
+    }
+
+    pub(crate) fn update(&self, batch: &mut StressBatch<'_>) -> Result<()> {
+        if batch.n == 0 {
+            return Ok(());
+        }
+        let kinematics = match self.model.kinematics {
+            Kinematics::StrainIncrement => need("strain_increment", batch.strain_increment.len()),
+            Kinematics::VelocityGradient => {
+                need("velocity_gradient", batch.velocity_gradient.len())
+            }
+            Kinematics::DeformationGradient => {
+                need("deformation_gradient", batch.deformation_gradient.len())
+            }
+        };
+        kinematics?;
+        need("stress1", batch.stress1.len())?;
+        need("wave_speed", batch.wave_speed.len())?;
+        self.need_state("state0", batch.state0.len())?;
+        self.need_state("state1", batch.state1.len())?;
+        self.need_output("diffusivity", LAHAR_OUTPUT_DIFFUSIVITY, batch.diffusivity.len())?;
+        self.need_output("energy", LAHAR_OUTPUT_ENERGY, batch.energy.len())?;
+        self.need_output("dt_factor", LAHAR_OUTPUT_DT_FACTOR, batch.dt_factor.len())?;
+        self.need_output("status", LAHAR_OUTPUT_STATUS, batch.status.len())?;
+        self.call("update", self.model.functions.update, batch)
+    }
+
+    pub(crate) fn wave_speed(&self, batch: &mut StressBatch<'_>) -> Result<()> {
+        if batch.n == 0 {
+            return Ok(());
+        }
+        need("wave_speed", batch.wave_speed.len())?;
+        self.need_state("state0", batch.state0.len())?;
+        self.need_output("diffusivity", LAHAR_OUTPUT_DIFFUSIVITY, batch.diffusivity.len())?;
+        self.call("wave_speed", self.model.functions.wave_speed, batch)
+    }
+
+    pub(crate) fn init_state(&self, batch: &mut StressBatch<'_>) -> Result<()> {
+        let Some(init_state) = self.model.functions.init_state else { return Ok(()) };
+        if batch.n == 0 {
+            return Ok(());
+        }
+        self.need_state("state1", batch.state1.len())?;
+        self.call("init_state", init_state, batch)
+    }
+
+    fn need_state(&self, name: &str, length: usize) -> Result<()> {
+        if self.model.states.is_empty() { Ok(()) } else { need(name, length) }
+    }
+
+    fn need_output(&self, name: &str, output: u64, length: usize) -> Result<()> {
+        if self.model.gives(output) { need(name, length) } else { Ok(()) }
+    }
+
+    fn call(&self, name: &str, function: Call, batch: &mut StressBatch<'_>) -> Result<()> {
+        let inputs = self.input_pointers(batch)?;
+        let raw = self.raw_batch(batch, &inputs)?;
+        let _one_at_a_time = self.serial();
+        take_error();
+        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
+        // arrays are borrowed for the call, and mutable borrows do not alias.
+        let code = unsafe { function(self.pointer, &raw) };
+        if code == LAHAR_PLUGIN_OK {
+            return Ok(());
+        }
+        let why = take_error().unwrap_or_else(|| format!("it returned {code} without saying why"));
+        Err(Error::new(
+            Status::MaterialFailed,
+            format!(
+                "`{name}` of the model `{}` (plugin {}) failed: {why}",
+                self.model.name, self.model.plugin_id
+            ),
+        ))
+    }
+
+    fn serial(&self) -> Option<MutexGuard<'static, ()>> {
+        self.model.functions.serial.map(|m| m.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// One pointer per wanted input, in the descriptor's order.
+    fn input_pointers(&self, batch: &StressBatch<'_>) -> Result<[*const f64; INPUTS]> {
+        let mut pointers = [ptr::null(); INPUTS];
+        for (pointer, input) in pointers.iter_mut().zip(&self.model.inputs) {
+            let (name, data) = match input {
+                Input::Density => ("density", batch.density),
+                Input::ElementLength => ("element_length", batch.element_length),
+            };
+            need(name, data.len())?;
+            *pointer = column(name, data, batch.n)?;
+        }
+        Ok(pointers)
+    }
+
+    /// The C batch: arrays that the model did not ask for become NULL, the lengths of the others are checked.
+    fn raw_batch(
+        &self,
+        batch: &mut StressBatch<'_>,
+        inputs: &[*const f64; INPUTS],
+    ) -> Result<lahar_stress_batch> {
+        let (n, stride) = (batch.n, batch.stride);
+        if stride < n || !stride.is_multiple_of(8) || stride > i64::MAX as usize / 64 {
+            return Err(defect(format!("stride {stride} for {n} points")));
+        }
+        need("stress0", batch.stress0.len())?;
+        let model = self.model;
+        let state = model.state_components();
+        let asked = |wanted: bool, name: &str, data: &[f64], components: usize| {
+            if wanted { array(name, data, components, stride) } else { Ok(ptr::null()) }
+        };
+        let output = |mask: u64, name: &str, data: &mut [f64]| {
+            if model.gives(mask) { column_mut(name, data, n) } else { Ok(ptr::null_mut()) }
+        };
+        let kinematics = |k: Kinematics| model.kinematics == k;
+        Ok(lahar_stress_batch {
+            struct_size: size_of::<lahar_stress_batch>() as u32,
+            flags: 0,
+            n: n as i64,
+            stride: stride as i64,
+            dt: batch.dt,
+            time: batch.time,
+            strain_increment: asked(
+                kinematics(Kinematics::StrainIncrement),
+                "strain_increment",
+                batch.strain_increment,
+                6,
+            )?,
+            velocity_gradient: asked(
+                kinematics(Kinematics::VelocityGradient),
+                "velocity_gradient",
+                batch.velocity_gradient,
+                9,
+            )?,
+            deformation_gradient: asked(
+                kinematics(Kinematics::DeformationGradient),
+                "deformation_gradient",
+                batch.deformation_gradient,
+                9,
+            )?,
+            stress0: array("stress0", batch.stress0, 6, stride)?,
+            state0: asked(state > 0, "state0", batch.state0, state)?,
+            stress1: array_mut("stress1", batch.stress1, 6, stride)?,
+            state1: if state > 0 {
+                array_mut("state1", batch.state1, state, stride)?
+            } else {
+                ptr::null_mut()
+            },
+            inputs: inputs.as_ptr(),
+            wave_speed: output(LAHAR_OUTPUT_WAVE_SPEED, "wave_speed", batch.wave_speed)?,
+            diffusivity: output(LAHAR_OUTPUT_DIFFUSIVITY, "diffusivity", batch.diffusivity)?,
+            energy: output(LAHAR_OUTPUT_ENERGY, "energy", batch.energy)?,
+            dt_factor: output(LAHAR_OUTPUT_DT_FACTOR, "dt_factor", batch.dt_factor)?,
+            status: if model.gives(LAHAR_OUTPUT_STATUS) {
+                column_mut("status", batch.status, n)?
+            } else {
+                ptr::null_mut()
+            },
+        })
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        let _one_at_a_time = LIFECYCLE.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the instance came from this model's `create`, and nobody can use it any more.
+        unsafe { (self.model.functions.destroy)(self.pointer) };
+    }
+}
+
+fn defect(what: String) -> Error {
+    Error::invalid(format!("a batch for a material is not well formed: {what}"))
+}
+
+fn need(name: &str, length: usize) -> Result<()> {
+    if length > 0 { Ok(()) } else { Err(defect(format!("{name} is missing"))) }
+}
+
+/// Base of `components * stride` values on a 64-byte boundary; NULL for an empty slice.
+fn array(name: &str, data: &[f64], components: usize, stride: usize) -> Result<*const f64> {
+    debug_assert!(data.is_empty() || data.as_ptr().addr().is_multiple_of(64), "{name}: alignment");
+    column(name, data, components * stride)
+}
+
+fn array_mut(name: &str, data: &mut [f64], components: usize, stride: usize) -> Result<*mut f64> {
+    debug_assert!(data.is_empty() || data.as_ptr().addr().is_multiple_of(64), "{name}: alignment");
+    column_mut(name, data, components * stride)
+}
+
+/// Base of at least `length` values; NULL for an empty slice.
+fn column(name: &str, data: &[f64], length: usize) -> Result<*const f64> {
+    match data.len() {
+        0 => Ok(ptr::null()),
+        l if l < length => Err(defect(format!("{name} has {l} values, needs {length}"))),
+        _ => Ok(data.as_ptr()),
+    }
+}
+
+fn column_mut<T>(name: &str, data: &mut [T], length: usize) -> Result<*mut T> {
+    match data.len() {
+        0 => Ok(ptr::null_mut()),
+        l if l < length => Err(defect(format!("{name} has {l} values, needs {length}"))),
+        _ => Ok(data.as_mut_ptr()),
+    }
+}

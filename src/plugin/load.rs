@@ -1,0 +1,156 @@
+//! Finds and opens plugin libraries. A file is opened once in a process and stays loaded until it ends.
+
+use super::handshake;
+use super::host::{HOST, take_error};
+use crate::error::{Error, Result, Status};
+use crate::material::Plugin;
+use lahar_plugin_abi::{LAHAR_PLUGIN_ABI_MAJOR, lahar_host_api, lahar_plugin_desc};
+use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Every plugin of the process. The lock is held while a plugin loads: entries run one at a time.
+static LOADED: Mutex<Vec<&'static Plugin>> = Mutex::new(Vec::new());
+
+type Entry = unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_desc;
+
+/// Majors whose entry symbols are looked for when that of this library is missing.
+const PROBED_MAJORS: std::ops::RangeInclusive<u32> = 0..=9;
+
+/// The plugin of a path (a text with a `/`) or of a bare name; see `Context::load_plugin`.
+pub(crate) fn load(name_or_path: &str) -> Result<&'static Plugin> {
+    let found = if name_or_path.contains('/') {
+        PathBuf::from(name_or_path)
+    } else {
+        find(name_or_path)?
+    };
+    let path = canonical_file(&found)?;
+    let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(plugin) = loaded.iter().find(|p| p.path == path) {
+        return Ok(plugin);
+    }
+    let plugin: &'static Plugin = Box::leak(Box::new(open(&path)?));
+    loaded.push(plugin);
+    Ok(plugin)
+}
+
+/// Looks for the library of a bare name in the absolute folders of `LAHAR_PLUGIN_PATH`.
+fn find(name: &str) -> Result<PathBuf> {
+    if name.is_empty() {
+        return Err(Error::invalid("the name of the plugin is empty; give a name or a path"));
+    }
+    let file = format!("{DLL_PREFIX}{name}{DLL_SUFFIX}");
+    let variable = std::env::var_os("LAHAR_PLUGIN_PATH").unwrap_or_default();
+    // An empty or relative folder would mean the current directory, from which nothing is loaded unasked.
+    let folders: Vec<PathBuf> =
+        std::env::split_paths(&variable).filter(|folder| folder.is_absolute()).collect();
+    if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|p| p.exists()) {
+        return Ok(path);
+    }
+    let searched = match folders.as_slice() {
+        [] => "LAHAR_PLUGIN_PATH names no absolute folder".to_string(),
+        some => {
+            let some: Vec<String> = some.iter().map(|f| f.display().to_string()).collect();
+            format!("searched for {file} in {} (LAHAR_PLUGIN_PATH)", some.join(", "))
+        }
+    };
+    Err(Error::new(
+        Status::PluginNotFound,
+        format!(
+            "no plugin `{name}`: {searched}; give a path (for a file of the current directory ./{file}) or add the \
+             plugin's folder to LAHAR_PLUGIN_PATH"
+        ),
+    ))
+}
+
+/// The canonical path of an existing file that looks like a shared library.
+fn canonical_file(path: &Path) -> Result<PathBuf> {
+    let shown = path.display();
+    let not_found = |e: std::io::Error| {
+        let text = format!("plugin {shown}: the file cannot be found or read ({e}); check the path");
+        Error::new(Status::PluginNotFound, text)
+    };
+    let invalid = |text: &str| Error::new(Status::PluginInvalid, format!("plugin {shown}: {text}"));
+    let path = fs::canonicalize(path).map_err(not_found)?;
+    let kind = fs::metadata(&path).map_err(not_found)?;
+    if kind.is_dir() {
+        return Err(invalid("this is a directory; give the path of the shared library inside it"));
+    }
+    if !kind.is_file() {
+        return Err(invalid("this is not a regular file; give the path of a shared library"));
+    }
+    let mut start = Vec::new();
+    File::open(&path).and_then(|f| f.take(4).read_to_end(&mut start)).map_err(not_found)?;
+    if cfg!(target_os = "linux") && start != b"\x7fELF" {
+        return Err(invalid(
+            "this is not a shared library (it does not start as an ELF file does); give the path of a .so file",
+        ));
+    }
+    Ok(path)
+}
+
+fn open(path: &Path) -> Result<Plugin> {
+    let shown = path.display();
+    // SAFETY: the user asked for this library; its initialisers run with the rights of the process, which the
+    // documentation of `lahar_context_load_plugin` says.
+    let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| {
+        Error::new(
+            Status::PluginInvalid,
+            format!("plugin {shown}: the system cannot load it: {}", with_source(&e)),
+        )
+    })?;
+    let entry = find_entry(&library, path);
+    // Thread-local destructors and static texts of a library live on: it is never unloaded, usable or not.
+    std::mem::forget(library);
+    let entry = entry?;
+    take_error();
+    // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock of loading.
+    let desc = unsafe { entry(&HOST) };
+    if desc.is_null() {
+        let why = take_error().unwrap_or_else(|| "without saying why".into());
+        let text = format!("plugin {shown}: it refused to load: {why}");
+        return Err(Error::new(Status::PluginRefused, text));
+    }
+    // SAFETY: the entry of this major returns a table of this major, valid for the life of the process.
+    unsafe { handshake::read_plugin(desc, path) }
+}
+
+/// The entry of this library's major, or an error that lists the majors of which there are entries.
+fn find_entry(library: &Library, path: &Path) -> Result<Entry> {
+    let symbol = |major: u32| {
+        let name = format!("lahar_plugin_entry_v{major}\0");
+        // SAFETY: only the entry of the major that we speak is called; its name fixes its type.
+        unsafe { library.get::<Entry>(name.as_bytes()) }.ok().map(|s| *s)
+    };
+    let ours = LAHAR_PLUGIN_ABI_MAJOR;
+    if let Some(entry) = symbol(ours) {
+        return Ok(entry);
+    }
+    let shown = path.display();
+    let found: Vec<String> =
+        PROBED_MAJORS.filter(|m| symbol(*m).is_some()).map(|m| m.to_string()).collect();
+    if found.is_empty() {
+        return Err(Error::new(
+            Status::PluginInvalid,
+            format!(
+                "plugin {shown}: this shared library is not a lahar plugin: expected the function \
+                 lahar_plugin_entry_v{ours}, found none of that name or of another major"
+            ),
+        ));
+    }
+    Err(Error::new(
+        Status::PluginAbi,
+        format!(
+            "plugin {shown}: expected major {ours} of the plugin ABI (lahar_plugin_entry_v{ours}), found major {}; \
+             build the plugin with the lahar_plugin.h of this library",
+            found.join(", ")
+        ),
+    ))
+}
+
+fn with_source(error: &dyn std::error::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), |source| format!("{error}: {source}"))
+}

@@ -1,0 +1,123 @@
+//! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the momentum.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::boundary::Wall;
+use crate::grid::key::block_nodes;
+use crate::grid::{EDGE, Key, Lanes};
+use crate::world::state::{Space, State, WallEntry};
+
+/// Nodes this close to the reach of a wall, in cells, still count as reached: the round-off of positions.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Applies the walls to v_i and Δv_i and sums their forces on the material.
+pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
+    if world.walls.is_empty() {
+        return;
+    }
+    for_each_block(world, |space, key, walls, r0, r1, impulses| {
+        for (entry, impulse) in walls.iter().zip(impulses) {
+            for_reached_nodes(&entry.wall, space, key, |n| {
+                let mass = r0[n][0];
+                let change = constrain::<D>(&entry.wall, &mut r0[n]);
+                for a in 0..D {
+                    r1[n][a + 1] += change[a];
+                    impulse[a] += mass * change[a];
+                }
+            });
+        }
+    });
+    let count = world.walls.len();
+    for (w, entry) in world.walls.iter_mut().enumerate() {
+        let mut total = [0.0; 3];
+        for impulse in world.impulses.iter().skip(w).step_by(count) {
+            for a in 0..D {
+                total[a] += impulse[a];
+            }
+        }
+        entry.reaction = total.map(|impulse| impulse / dt);
+    }
+}
+
+/// Turns the momentum of the second scatter (R1) into velocity and applies the walls to it.
+pub fn apply_boundaries_again<const D: usize>(world: &mut State<D>) {
+    let floor = world.mass_floor;
+    for_each_block(world, |space, key, walls, r0, r1, _| {
+        for (r0, r1) in r0.iter().zip(r1.iter_mut()) {
+            let inverse = if r0[0] > floor { 1.0 / r0[0] } else { 0.0 };
+            *r1 = r1.map(|momentum| momentum * inverse);
+        }
+        for entry in walls {
+            for_reached_nodes(&entry.wall, space, key, |n| {
+                constrain::<D>(&entry.wall, &mut r1[n]);
+            });
+        }
+    });
+}
+
+/// Applies a wall to the velocity in lanes 1 to D and gives the change.
+fn constrain<const D: usize>(wall: &Wall, node: &mut Lanes) -> [f64; D] {
+    let before: [f64; D] = std::array::from_fn(|a| node[a + 1]);
+    let after = wall.constrain(before);
+    node[1..=D].copy_from_slice(&after);
+    std::array::from_fn(|a| after[a] - before[a])
+}
+
+/// Calls `visit` with the places in block `key` of the nodes that the wall reaches.
+fn for_reached_nodes<const D: usize>(
+    wall: &Wall,
+    space: &Space<D>,
+    key: &Key<D>,
+    mut visit: impl FnMut(usize),
+) {
+    let reached = reached_layers(wall, space, key);
+    if reached.is_empty() {
+        return;
+    }
+    let pitch = EDGE.pow((D - 1 - wall.axis) as u32);
+    for n in 0..block_nodes(D) {
+        if reached.contains(&(n / pitch % EDGE)) {
+            visit(n);
+        }
+    }
+}
+
+/// Layers of nodes of block `key`, along the wall's axis, that the wall reaches.
+fn reached_layers<const D: usize>(wall: &Wall, space: &Space<D>, key: &Key<D>) -> Range<usize> {
+    let at = (wall.position - space.origin[wall.axis]) / space.spacing;
+    let reach = space.wall_reach + ROUND_OFF;
+    let lowest = f64::from(key[wall.axis]) * EDGE as f64;
+    let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
+    if wall.side > 0 {
+        0..clamp((at + reach).floor() - lowest + 1.0)
+    } else {
+        clamp((at - reach).ceil() - lowest)..EDGE
+    }
+}
+
+/// Calls `work` for every block.
+fn for_each_block<const D: usize>(
+    world: &mut State<D>,
+    work: impl Fn(&Space<D>, &Key<D>, &[WallEntry], &mut [Lanes], &mut [Lanes], &mut [[f64; 3]]) + Sync,
+) {
+    let (space, nodes, per_block) = (world.space(), block_nodes(D), world.walls.len().max(1));
+    let State { grid, walls, impulses, .. } = world;
+    let (keys, velocity, increment) = grid.keys_and_records();
+    impulses.clear();
+    impulses.resize(keys.len() * per_block, [0.0; 3]);
+    if world.parallel {
+        keys.par_iter()
+            .zip(velocity.par_chunks_mut(nodes))
+            .zip(increment.par_chunks_mut(nodes))
+            .zip(impulses.par_chunks_mut(per_block))
+            .for_each(|(((key, r0), r1), sums)| work(&space, key, walls, r0, r1, sums));
+    } else {
+        keys.iter()
+            .zip(velocity.chunks_mut(nodes))
+            .zip(increment.chunks_mut(nodes))
+            .zip(impulses.chunks_mut(per_block))
+            .for_each(|(((key, r0), r1), sums)| work(&space, key, walls, r0, r1, sums));
+    }
+}

@@ -1,0 +1,106 @@
+//! One explicit step of the material point method: read this file and you have read the algorithm.
+//!
+//! | stage | produces | file |
+//! |---|---|---|
+//! | how far may we go | dt | [`time_step`] |
+//! | sort particles into blocks | runs, tiles, active blocks | [`locate`](mod@locate) |
+//! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
+//! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
+//! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
+//! | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
+//! | update the strain | Δε_p, V_p, rotated σ_p | [`update_strain`](mod@update_strain) |
+//! | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
+//!
+//! The last three go over a chunk of particles while it is in cache. [`naive`] is the same step as the textbook writes it.
+
+pub mod apply_boundaries;
+pub mod grid_to_particles;
+pub mod locate;
+pub mod naive;
+pub mod particles_to_grid;
+pub mod time_step;
+pub mod update_grid;
+pub mod update_strain;
+pub mod update_stress;
+
+use crate::error::{Error, Result};
+use crate::world::hooks::HookPoint;
+use crate::world::state::State;
+
+use apply_boundaries::{apply_boundaries, apply_boundaries_again};
+use grid_to_particles::{Gather, grid_to_particles};
+use locate::locate;
+use particles_to_grid::{particles_to_grid, velocities_to_grid};
+use time_step::Limits;
+use update_grid::update_grid;
+use update_strain::update_strain;
+use update_stress::{Outcome, update_stress};
+
+/// Where in a step the stress is updated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum StepOrder {
+    /// Update stress last.
+    Usl = 0,
+    /// Modified update stress last: the velocity gradient comes from particle velocities mapped a second time.
+    Musl = 1,
+}
+
+impl StepOrder {
+    /// The order with this number.
+    pub fn from_i32(value: i32) -> Result<Self> {
+        match value {
+            0 => Ok(Self::Usl),
+            1 => Ok(Self::Musl),
+            _ => Err(Error::invalid(format!("order must be 0 (USL) or 1 (MUSL), got {value}"))),
+        }
+    }
+}
+
+/// One step of length `dt` [s]. On success gives the limits of the next time step.
+pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
+    locate(world)?;
+    world.hook(HookPoint::Start, dt);
+    let outcome = match world.options.order {
+        StepOrder::Usl => usl(world, dt),
+        StepOrder::Musl => musl(world, dt),
+    };
+    world.hook(HookPoint::End, dt);
+    outcome.limits()
+}
+
+/// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118 (1994) 179–196,
+/// doi:10.1016/0045-7825(94)90112-0.
+fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    particles_to_grid(world);
+    world.hook(HookPoint::AfterScatter, dt);
+    update_grid(world, dt);
+    apply_boundaries(world, dt);
+    world.hook(HookPoint::AfterBoundaries, dt);
+    world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::Everything, dt);
+        update_strain(piece, dt);
+        update_stress(piece, dt)
+    })
+}
+
+/// Modified update stress last: the new particle velocities are mapped to the grid again, and the velocity gradient is taken of
+/// those. D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
+fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    particles_to_grid(world);
+    world.hook(HookPoint::AfterScatter, dt);
+    update_grid(world, dt);
+    apply_boundaries(world, dt);
+    world.hook(HookPoint::AfterBoundaries, dt);
+    world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::Velocity, dt);
+        Outcome::default()
+    });
+    velocities_to_grid(world);
+    apply_boundaries_again(world);
+    world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::PositionAndGradient, dt);
+        update_strain(piece, dt);
+        update_stress(piece, dt)
+    })
+}

@@ -1,0 +1,100 @@
+//! Stage 0: how far may we go?
+//!
+//! dt = CFL · min(h / max(c + |v|), h² / (2 D ν)) with the wave speed c and the kinematic diffusivity ν of the materials, after
+//! R. Courant, K. Friedrichs, H. Lewy, Math. Ann. 100 (1928) 32–74. Each stress update leaves the limits of the next step; after the
+//! host changed particles they are asked of the materials anew.
+
+use crate::error::{Error, Result};
+use crate::material::StressBatch;
+use crate::particles::CHUNK;
+use crate::world::scratch::with_scratch;
+use crate::world::state::{Body, State};
+
+/// What limits the next time step.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Largest c + |v| of all particles [m/s].
+    pub speed: f64,
+    /// Largest kinematic diffusivity [m²/s].
+    pub diffusivity: f64,
+    /// Longest step that a material asked for [s]; infinity if none did.
+    pub wanted_dt: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { speed: 0.0, diffusivity: 0.0, wanted_dt: f64::INFINITY }
+    }
+}
+
+impl Limits {
+    /// The stricter of both in every respect.
+    pub fn merge(self, other: Self) -> Self {
+        Self {
+            speed: self.speed.max(other.speed),
+            diffusivity: self.diffusivity.max(other.diffusivity),
+            wanted_dt: self.wanted_dt.min(other.wanted_dt),
+        }
+    }
+
+    /// The stable time step [s]; infinity if nothing moves and nothing resists.
+    pub fn stable_dt(&self, cfl: f64, spacing: f64, dimension: usize) -> f64 {
+        let wave = spacing / self.speed;
+        let viscous = spacing * spacing / (2.0 * dimension as f64 * self.diffusivity);
+        (cfl * wave.min(viscous)).min(self.wanted_dt)
+    }
+}
+
+/// Asks the materials for wave speeds and diffusivities of the present state.
+pub fn limits_of_state<const D: usize>(world: &State<D>) -> Result<Limits> {
+    let mut limits = Limits::default();
+    for body in &world.bodies {
+        for first in (0..body.particles.len()).step_by(CHUNK) {
+            let n = CHUNK.min(body.particles.len() - first);
+            limits = limits.merge(limits_of_chunk::<D>(body, first, n, world.options.spacing)?);
+        }
+    }
+    Ok(limits)
+}
+
+fn limits_of_chunk<const D: usize>(
+    body: &Body,
+    first: usize,
+    n: usize,
+    spacing: f64,
+) -> Result<Limits> {
+    let particles = &body.particles;
+    let layout = particles.layout;
+    with_scratch(&body.material, n, |s| {
+        for c in 0..6 {
+            s.stress0[c * s.stride..][..n]
+                .copy_from_slice(&particles.column(layout.stress + c)[first..first + n]);
+        }
+        for c in 0..layout.state_components() {
+            s.state0[c * s.stride..][..n]
+                .copy_from_slice(&particles.column(layout.state + c)[first..first + n]);
+        }
+        for k in 0..n {
+            s.set_inputs(k, particles.column(layout.mass)[first + k] / particles.column(layout.volume)[first + k], spacing);
+        }
+        let mut batch = StressBatch { dt: 0.0, time: 0.0, ..s.batch() };
+        body.material.wave_speed(&mut batch)?;
+        let mut limits = Limits::default();
+        for k in 0..n {
+            let v = particles.get::<D>(layout.velocity, first + k);
+            let speed = s.wave_speed[k] + v.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if !speed.is_finite() {
+                let id = particles.id[first + k];
+                return Err(Error::invalid(format!(
+                    "the wave speed of particle {id} of body {} is {speed}; check its stress, state and parameters",
+                    body.id
+                )));
+            }
+            limits.speed = limits.speed.max(speed);
+            if let Some(nu) = s.diffusivity.get(k) {
+                limits.diffusivity = limits.diffusivity.max(*nu);
+            }
+        }
+        Ok(limits)
+    })
+}

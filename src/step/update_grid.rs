@@ -1,0 +1,38 @@
+//! Stage 3, the grid: v_i = (mv)_i / m_i + dt (f_i / m_i + g), with local non-viscous damping.
+//!
+//! Damping takes α |F| from every component of the force F = f + m g, against the velocity: F ← F − α |F| sgn(v).
+//! P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods in Engineering Rock Mechanics (1987) 129–163.
+
+use rayon::prelude::*;
+
+use crate::grid::Lanes;
+use crate::world::state::State;
+
+/// Turns momentum and force into velocity (R0) and its increment (R1).
+pub fn update_grid<const D: usize>(world: &mut State<D>, dt: f64) {
+    let (gravity, damping, floor) = (world.options.gravity, world.options.damping, world.mass_floor);
+    let node = |((r0, r1), force): ((&mut Lanes, &mut Lanes), &Lanes)| {
+        let mass = r0[0];
+        if mass <= floor {
+            (*r0, *r1) = ([mass, 0.0, 0.0, 0.0], [0.0; 4]);
+            return;
+        }
+        for a in 1..=D {
+            let before = r0[a] / mass;
+            let mut acceleration = force[a] / mass + gravity[a - 1];
+            if damping > 0.0 && before != 0.0 {
+                acceleration -= damping * acceleration.abs() * before.signum();
+            }
+            r1[a] = dt * acceleration;
+            r0[a] = before + r1[a];
+        }
+    };
+    let grid = &mut world.grid;
+    if world.parallel {
+        let records = grid.velocity.par_iter_mut().zip(&mut grid.increment).zip(&grid.force);
+        records.with_min_len(4096).for_each(node);
+    } else {
+        let records = grid.velocity.iter_mut().zip(&mut grid.increment).zip(&grid.force);
+        records.for_each(node);
+    }
+}

@@ -1,0 +1,221 @@
+//! Bodies come and go.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Place, Result};
+use crate::material::{Kinematics, Material};
+use crate::particles::seeding::{Fill, Region, fill};
+use crate::particles::{CHUNK, Layout, Particles};
+use crate::step::locate::FARTHEST;
+use crate::transfer::TransferKind;
+
+use super::host_arrays::{ParticleArrays, Strided};
+use super::scratch::with_scratch;
+use super::state::{Body, State};
+
+/// Most particles of a body.
+const MOST: usize = u32::MAX as usize - 1;
+
+impl<const D: usize> State<D> {
+    /// Adds a body with the given id from arrays; on error nothing changes.
+    pub fn add_particles(
+        &mut self,
+        id: i64,
+        material: &Arc<Material>,
+        arrays: &ParticleArrays<'_>,
+    ) -> Result<()> {
+        let n = arrays.position.strides.count;
+        if n == 0 || n > MOST {
+            return Err(Error::invalid(format!("a body needs 1 to {MOST} particles, got {n}")));
+        }
+        if arrays.mass.is_none() && !(arrays.density > 0.0 && arrays.density.is_finite()) {
+            return Err(Error::invalid(format!(
+                "without masses the density must be positive and finite [kg/m^3], got {}",
+                arrays.density
+            )));
+        }
+        let gradient = material.model().kinematics == Kinematics::DeformationGradient;
+        let affine = self.options.transfer == TransferKind::Apic;
+        let state = material.model().state_components();
+        let mut particles = Particles::new(Layout::new(D, affine, gradient, state), n);
+        let layout = particles.layout;
+        copy(&mut particles, layout.position, &arrays.position, "position", D)?;
+        copy(&mut particles, layout.volume, &arrays.volume, "volume", 1)?;
+        if let Some(velocity) = &arrays.velocity {
+            copy(&mut particles, layout.velocity, velocity, "velocity", D)?;
+        }
+        if let Some(stress) = &arrays.stress {
+            copy(&mut particles, layout.stress, stress, "stress", 6)?;
+        }
+        match &arrays.mass {
+            Some(mass) => copy(&mut particles, layout.mass, mass, "mass", 1)?,
+            None => {
+                for k in 0..n {
+                    particles.column_mut(layout.mass)[k] = arrays.density * arrays.volume.get(0, k);
+                }
+            }
+        }
+        if gradient {
+            for c in [0, 4, 8] {
+                particles.column_mut(layout.deformation_gradient + c).fill(1.0);
+            }
+        }
+        self.insert(Body { id, material: material.clone(), particles, runs: Vec::new() })
+    }
+
+    /// Adds a body that fills a region.
+    pub fn add_region(
+        &mut self,
+        id: i64,
+        material: &Arc<Material>,
+        region: &Region,
+        how: &Fill,
+    ) -> Result<()> {
+        let given = (how.density != 0.0, how.mass != 0.0);
+        if given.0 == given.1 {
+            return Err(Error::invalid(format!(
+                "give either the density or the total mass of the body, got density {} and mass {}",
+                how.density, how.mass
+            )));
+        }
+        let (points, volume) =
+            fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
+        let n = points.len();
+        let density = if given.0 { how.density } else { how.mass / (volume * n as f64) };
+        if !(density > 0.0 && density.is_finite()) {
+            return Err(Error::invalid(format!(
+                "density [kg/m^3] or mass [kg] must be positive and finite, got {density} kg/m^3"
+            )));
+        }
+        let velocity: Vec<f64> = how.velocity[..D].repeat(n);
+        let stress = how.stress.repeat(n);
+        self.add_particles(
+            id,
+            material,
+            &ParticleArrays {
+                position: Strided::interleaved(points.as_flattened(), D)?,
+                volume: Strided::interleaved(&vec![volume; n], 1)?,
+                mass: None,
+                density,
+                velocity: Some(Strided::interleaved(&velocity, D)?),
+                stress: Some(Strided::interleaved(&stress, 6)?),
+            },
+        )
+    }
+
+    fn insert(&mut self, mut body: Body) -> Result<()> {
+        self.check_particles(&body)?;
+        init_state(&mut body, self.options.spacing)?;
+        self.check_particles(&body)?;
+        self.bodies.push(body);
+        self.particles_changed();
+        Ok(())
+    }
+
+    /// Checks everything that a host may have written: finite, masses and volumes positive, positions inside the grid.
+    pub fn check_particles(&self, body: &Body) -> Result<()> {
+        let particles = &body.particles;
+        let layout = particles.layout;
+        let place = |k: usize| Place {
+            body: Some(body.id),
+            particle: Some(particles.id[k]),
+            ..self.place()
+        };
+        for c in 0..layout.components() {
+            let positive = c == layout.mass || c == layout.volume;
+            let good = |v: &f64| v.is_finite() && (!positive || *v > 0.0);
+            if let Some(k) = particles.column(c).iter().position(|v| !good(v)) {
+                let name = field_of_column(&layout, D, c);
+                let rule = if positive { "positive and finite" } else { "finite" };
+                let text = format!(
+                    "{name} of particle {} must be {rule}, got {}",
+                    particles.id[k],
+                    particles.column(c)[k]
+                );
+                return Err(Error::invalid(text).at(place(k)));
+            }
+        }
+        let space = self.space();
+        for k in 0..particles.len() {
+            let x = particles.get::<D>(layout.position, k);
+            let far = space.to_units(x).iter().any(|xi| !(xi.abs() < FARTHEST));
+            if far || !self.inside_box(&x) {
+                let text = format!(
+                    "particle {} at {x:?} is outside the grid (8e9 cells around its origin, or the box of a static grid)",
+                    particles.id[k]
+                );
+                return Err(Error::invalid(text).at(place(k)));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn copy(
+    particles: &mut Particles,
+    first: usize,
+    array: &Strided<'_>,
+    name: &str,
+    components: usize,
+) -> Result<()> {
+    let n = particles.len();
+    let (count, has) = (array.strides.count, array.strides.components);
+    if count != n || has != components {
+        return Err(Error::invalid(format!(
+            "{name} must hold {components} components of {n} particles, got {has} of {count}"
+        )));
+    }
+    for c in 0..components {
+        for (k, to) in particles.column_mut(first + c).iter_mut().enumerate() {
+            *to = array.get(c, k);
+        }
+    }
+    Ok(())
+}
+
+/// Fills the state with initial values and lets the model derive it from stress and density.
+fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
+    let Body { material, particles, .. } = body;
+    let layout = particles.layout;
+    let mut first = layout.state;
+    for state in &material.model().states {
+        for _ in 0..state.kind.components() {
+            particles.column_mut(first).fill(state.initial);
+            first += 1;
+        }
+    }
+    for start in (0..particles.len()).step_by(CHUNK) {
+        let n = CHUNK.min(particles.len() - start);
+        with_scratch(material, n, |s| {
+            for k in 0..n {
+                let [mass] = particles.get::<1>(layout.mass, start + k);
+                let [volume] = particles.get::<1>(layout.volume, start + k);
+                s.set_inputs(k, mass / volume, spacing);
+                for c in 0..6 {
+                    s.stress0[c * s.stride + k] = particles.column(layout.stress + c)[start + k];
+                }
+                for c in 0..layout.state_components() {
+                    let value = particles.column(layout.state + c)[start + k];
+                    s.state0[c * s.stride + k] = value;
+                    s.state1[c * s.stride + k] = value;
+                }
+            }
+            material.init_state(&mut s.batch())?;
+            for c in 0..layout.state_components() {
+                particles.column_mut(layout.state + c)[start..start + n]
+                    .copy_from_slice(&s.state1[c * s.stride..][..n]);
+            }
+            Ok(())
+        })?;
+    }
+    Ok(())
+}
+
+fn field_of_column(layout: &Layout, dimension: usize, column: usize) -> String {
+    let inside = |first: usize, components: usize| (first..first + components).contains(&column);
+    layout
+        .fields(dimension)
+        .iter()
+        .find(|(info, first)| inside(*first, info.components))
+        .map_or("a state variable".to_string(), |(info, _)| info.name.to_string_lossy().into_owned())
+}

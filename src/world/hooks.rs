@@ -1,0 +1,78 @@
+//! Hooks: calls into the middle of a step, for Rust callers and tests.
+
+use crate::grid::Grid;
+
+/// Where in a step a hook runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HookPoint {
+    /// After the particles are sorted into blocks.
+    Start = 0,
+    /// When the grid holds mass, momentum and force.
+    AfterScatter = 1,
+    /// When the grid holds the new velocities, boundaries included.
+    AfterBoundaries = 2,
+    /// When the particles are updated.
+    End = 3,
+}
+
+/// Number of hook points.
+pub const HOOK_POINTS: usize = 4;
+
+/// The active nodes of a grid, whatever its dimension.
+pub trait Nodes {
+    /// Number of active nodes.
+    fn count(&self) -> usize;
+    /// Position of a node [m]; z is 0 in two dimensions.
+    fn position(&self, node: usize) -> [f64; 3];
+    /// Mass of a node [kg].
+    fn mass(&self, node: usize) -> f64;
+    /// Velocity of a node [m/s]; momentum before the grid update.
+    fn velocity(&self, node: usize) -> [f64; 3];
+    /// Prescribes the velocity of a node [m/s]; its increment follows. After the boundaries only.
+    fn set_velocity(&mut self, node: usize, velocity: [f64; 3]);
+}
+
+impl<const D: usize> Nodes for Grid<D> {
+    fn count(&self) -> usize {
+        self.velocity.len()
+    }
+
+    fn position(&self, node: usize) -> [f64; 3] {
+        let index = self.node_index(node).unwrap_or([0; D]);
+        let mut x = [0.0; 3];
+        for d in 0..D {
+            x[d] = self.node_position(d, index[d]);
+        }
+        x
+    }
+
+    fn mass(&self, node: usize) -> f64 {
+        self.velocity[node][0]
+    }
+
+    fn velocity(&self, node: usize) -> [f64; 3] {
+        let [_, v @ ..] = self.velocity[node];
+        v
+    }
+
+    fn set_velocity(&mut self, node: usize, velocity: [f64; 3]) {
+        for a in 0..D {
+            let change = velocity[a] - self.velocity[node][a + 1];
+            self.velocity[node][a + 1] = velocity[a];
+            self.increment[node][a + 1] += change;
+        }
+    }
+}
+
+/// What a hook sees: the time at the start of the step [s], the step [s], the nodes.
+pub struct HookArguments<'a> {
+    /// Time at the start of the step [s].
+    pub time: f64,
+    /// Length of the step [s].
+    pub dt: f64,
+    /// The grid.
+    pub nodes: &'a mut dyn Nodes,
+}
+
+/// A hook.
+pub type Hook = Box<dyn FnMut(HookArguments<'_>) + Send + Sync>;

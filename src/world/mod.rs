@@ -1,0 +1,450 @@
+//! A world owns a grid, bodies and walls, and steps them.
+//!
+//! [`World`] is the façade that the C ABI wraps; [`state::State`] is what the stages of a step work on, in two or three dimensions.
+
+pub mod bodies;
+pub mod dispatch;
+pub mod fields;
+pub mod hooks;
+pub mod host_arrays;
+pub mod options;
+pub mod queries;
+pub mod scratch;
+pub mod state;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::boundary::Wall;
+use crate::context::Context;
+use crate::error::{Error, Result, Status};
+use crate::grid::GridStats;
+use crate::material::Material;
+use crate::particles::FieldInfo;
+use crate::particles::fields::NODE_FIELDS;
+use crate::particles::seeding::{Fill, Region};
+use crate::step;
+use crate::step::locate::locate;
+use crate::step::particles_to_grid::particles_to_grid;
+use crate::step::time_step::limits_of_state;
+use crate::step::update_grid::update_grid;
+
+use hooks::{Hook, HookPoint};
+use host_arrays::ParticleArrays;
+use options::{Options, check_damping, check_gravity};
+use queries::Totals;
+use state::{State, WallEntry};
+
+/// A host's step may exceed the stable one by this much: its own arithmetic.
+const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
+
+/// Bodies, grid, walls and time.
+pub struct World {
+    pub(crate) inner: Inner,
+    next_body: i64,
+    next_wall: i64,
+    last_dt: f64,
+    host_wrote: bool,
+    poisoned: bool,
+}
+
+pub(crate) enum Inner {
+    Two(Box<State<2>>),
+    Three(Box<State<3>>),
+}
+
+/// Evaluates an expression for the state, whatever its dimension.
+macro_rules! on {
+    (&$world:expr, $state:ident => $body:expr) => {
+        match &$world.inner {
+            $crate::world::Inner::Two($state) => $body,
+            $crate::world::Inner::Three($state) => $body,
+        }
+    };
+    (&mut $world:expr, $state:ident => $body:expr) => {
+        match &mut $world.inner {
+            $crate::world::Inner::Two($state) => $body,
+            $crate::world::Inner::Three($state) => $body,
+        }
+    };
+}
+pub(crate) use on;
+
+impl World {
+    /// An empty world. Errors name the option that is wrong.
+    pub fn new(context: &Arc<Context>, options: &Options) -> Result<World> {
+        options.check()?;
+        let (context, options) = (context.clone(), options.clone());
+        let inner = match options.dimension {
+            2 => Inner::Two(Box::new(State::new(context, options))),
+            _ => Inner::Three(Box::new(State::new(context, options))),
+        };
+        Ok(World {
+            inner,
+            next_body: 0,
+            next_wall: 0,
+            last_dt: 0.0,
+            host_wrote: false,
+            poisoned: false,
+        })
+    }
+
+    /// The options, with gravity and damping as they are now.
+    pub fn options(&self) -> &Options {
+        on!(&self, s => &s.options)
+    }
+
+    /// Sets gravity [m/s²] from the next step on.
+    pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<()> {
+        self.check_alive()?;
+        check_gravity(gravity)?;
+        on!(&mut self, s => s.options.gravity = gravity);
+        Ok(())
+    }
+
+    /// Sets local non-viscous damping from the next step on.
+    pub fn set_damping(&mut self, damping: f64) -> Result<()> {
+        self.check_alive()?;
+        check_damping(damping)?;
+        on!(&mut self, s => s.options.damping = damping);
+        Ok(())
+    }
+
+    /// Adds a body from arrays and gives its id.
+    pub fn add_particles(
+        &mut self,
+        material: &Arc<Material>,
+        particles: &ParticleArrays<'_>,
+    ) -> Result<i64> {
+        self.add(|world, id| on!(&mut world, s => s.add_particles(id, material, particles)))
+    }
+
+    /// Adds a body that fills a region and gives its id.
+    pub fn add_shape(
+        &mut self,
+        material: &Arc<Material>,
+        region: &Region,
+        fill: &Fill,
+    ) -> Result<i64> {
+        self.add(|world, id| on!(&mut world, s => s.add_region(id, material, region, fill)))
+    }
+
+    fn add(&mut self, insert: impl FnOnce(&mut Self, i64) -> Result<()>) -> Result<i64> {
+        self.check_alive()?;
+        let id = self.next_body;
+        insert(self, id)?;
+        self.next_body += 1;
+        Ok(id)
+    }
+
+    /// Removes a body with its particles.
+    pub fn remove_body(&mut self, body: i64) -> Result<()> {
+        self.check_alive()?;
+        on!(&mut self, s => {
+            let at = s.body_position(body)?;
+            s.bodies.remove(at);
+            s.particles_changed();
+        });
+        Ok(())
+    }
+
+    /// Ids of the bodies, ascending.
+    pub fn bodies(&self) -> Vec<i64> {
+        on!(&self, s => s.bodies.iter().map(|b| b.id).collect())
+    }
+
+    /// Number of particles of a body.
+    pub fn particle_count(&self, body: i64) -> Result<usize> {
+        on!(&self, s => Ok(s.body(body)?.particles.len()))
+    }
+
+    /// Adds a wall and gives its id.
+    pub fn add_wall(&mut self, wall: &Wall) -> Result<i64> {
+        self.check_alive()?;
+        wall.check(self.options().dimension)?;
+        let id = self.next_wall;
+        self.next_wall += 1;
+        on!(&mut self, s => s.walls.push(WallEntry { id, wall: *wall, reaction: [0.0; 3] }));
+        Ok(id)
+    }
+
+    /// Removes a wall.
+    pub fn remove_wall(&mut self, wall: i64) -> Result<()> {
+        self.check_alive()?;
+        on!(&mut self, s => {
+            let at = s.wall_position(wall)?;
+            s.walls.remove(at);
+        });
+        Ok(())
+    }
+
+    /// Force of a wall on the material in the last step [N]; the force on the wall is the opposite.
+    pub fn wall_reaction(&self, wall: i64) -> Result<[f64; 3]> {
+        on!(&self, s => Ok(s.walls[s.wall_position(wall)?].reaction))
+    }
+
+    /// One step, of length `dt` [s] or the stable one; gives the length.
+    ///
+    /// Refused with [`Status::StepTooLarge`] if `dt` exceeds the stable step. If a material fails in the middle the world is
+    /// poisoned.
+    pub fn step(&mut self, dt: Option<f64>) -> Result<f64> {
+        let stable = self.prepare()?;
+        let dt = match dt {
+            Some(dt) => dt,
+            None if stable.is_finite() => stable,
+            None => {
+                return Err(Error::invalid(
+                    "the stable step is infinite (no particles, or none that carries a wave): give dt",
+                ));
+            }
+        };
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(Error::invalid(format!("dt must be positive and finite [s], got {dt}")));
+        }
+        if dt > stable * STEP_TOLERANCE {
+            let mut place = on!(&self, s => s.place());
+            place.suggested_dt = Some(stable);
+            let text = format!(
+                "the time step {dt:e} s exceeds the stable one, {stable:e} s (cfl {}): nothing was done; \
+                 take a step of at most that, or lahar_world_step_auto",
+                self.options().cfl
+            );
+            return Err(Error::new(Status::StepTooLarge, text).at(place));
+        }
+        self.commit(dt)?;
+        on!(&mut self, s => s.time += dt);
+        Ok(dt)
+    }
+
+    /// Steps until the time `until` [s], or `max_steps` steps. Gives the number of steps that were done, and the first error.
+    ///
+    /// The last two steps are shortened so that `until` is met exactly.
+    pub fn advance(&mut self, until: f64, max_steps: i64) -> (i64, Result<()>) {
+        if !until.is_finite() || until < self.time() || max_steps < 0 {
+            let text = format!(
+                "advance needs a finite time not before now ({} s) and max_steps >= 0, got {until} and {max_steps}",
+                self.time()
+            );
+            return (0, self.check_alive().and(Err(Error::invalid(text))));
+        }
+        let mut steps = 0;
+        while self.time() < until && steps < max_steps {
+            let stable = match self.prepare() {
+                Ok(stable) => stable,
+                Err(error) => return (steps, Err(error)),
+            };
+            let rest = until - self.time();
+            let dt = if rest <= stable {
+                rest
+            } else if rest < 2.0 * stable {
+                0.5 * rest
+            } else {
+                stable
+            };
+            if let Err(error) = self.commit(dt) {
+                return (steps, Err(error));
+            }
+            on!(&mut self, s => s.time = if dt == rest { until } else { s.time + dt });
+            steps += 1;
+        }
+        (steps, Ok(()))
+    }
+
+    /// Checks what the host wrote and gives the stable step [s].
+    fn prepare(&mut self) -> Result<f64> {
+        self.check_alive()?;
+        if self.host_wrote {
+            on!(&mut self, s => {
+                for body in &s.bodies {
+                    s.check_particles(body).map_err(|error| Error {
+                        status: Status::NonFiniteInput,
+                        ..error
+                    })?;
+                }
+                s.find_mass_floor();
+            });
+            self.host_wrote = false;
+        }
+        let stable = self.stable_dt()?;
+        on!(&mut self, s => if s.limits.is_none() {
+            s.limits = Some(limits_of_state(s)?);
+        });
+        Ok(stable)
+    }
+
+    fn commit(&mut self, dt: f64) -> Result<()> {
+        let result = on!(&mut self, s => {
+            let place = s.place();
+            let result = if s.parallel {
+                let context = s.context.clone();
+                context.install(|| step::step(&mut **s, dt))
+            } else {
+                step::step(&mut **s, dt)
+            };
+            match result {
+                Ok(limits) => {
+                    s.limits = Some(limits);
+                    s.step_count += 1;
+                    Ok(())
+                }
+                Err(mut error) => {
+                    (error.place.step, error.place.time) = (place.step, place.time);
+                    Err(error)
+                }
+            }
+        });
+        match &result {
+            Ok(()) => self.last_dt = dt,
+            Err(error) => self.poisoned = (error.status as i32) < 0,
+        }
+        result
+    }
+
+    /// The stable time step [s]; infinity without particles.
+    pub fn stable_dt(&self) -> Result<f64> {
+        on!(&self, s => {
+            let limits = match s.limits {
+                Some(limits) => limits,
+                None => limits_of_state(s)?,
+            };
+            let o = &s.options;
+            Ok(limits.stable_dt(o.cfl, o.spacing, o.dimension))
+        })
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        on!(&self, s => s.time)
+    }
+
+    /// Number of steps.
+    pub fn step_count(&self) -> i64 {
+        on!(&self, s => s.step_count)
+    }
+
+    /// Length of the last step [s]; 0 before the first.
+    pub fn last_dt(&self) -> f64 {
+        self.last_dt
+    }
+
+    /// Whether a step failed in the middle.
+    pub fn is_poisoned(&self) -> bool {
+        self.poisoned
+    }
+
+    fn check_alive(&self) -> Result<()> {
+        if !self.poisoned {
+            return Ok(());
+        }
+        let text = "a step of this world failed in the middle; it answers queries and can be freed";
+        Err(Error::new(Status::Poisoned, text))
+    }
+
+    /// Totals of one body or of all.
+    pub fn totals(&self, body: Option<i64>) -> Result<Totals> {
+        on!(&self, s => {
+            if let Some(body) = body {
+                s.body_position(body)?;
+            }
+            Ok(s.totals(body))
+        })
+    }
+
+    /// Whether particles are sorted and the grid is built.
+    pub fn is_fresh(&self) -> bool {
+        on!(&self, s => !s.regroup)
+    }
+
+    /// Sorts particles that came or went into blocks, and maps mass and momentum to the grid.
+    pub fn refresh(&mut self) -> Result<()> {
+        on!(&mut self, s => if s.regroup {
+            let context = s.context.clone();
+            context.install(|| {
+                locate(&mut **s)?;
+                particles_to_grid(&mut **s);
+                update_grid(&mut **s, 0.0);
+                Ok(())
+            })
+        } else {
+            Ok(())
+        })
+    }
+
+    /// Sets a hook into the step, or takes it away.
+    pub fn set_hook(&mut self, point: HookPoint, hook: Option<Hook>) {
+        on!(&mut self, s => s.set_hook(point, hook));
+    }
+
+    /// Numbers of blocks and nodes, and their memory.
+    pub fn grid_stats(&self) -> GridStats {
+        on!(&self, s => s.grid_stats())
+    }
+
+    /// Integer coordinates of the active blocks; z is 0 in two dimensions.
+    pub fn grid_blocks(&self) -> Vec<[i64; 3]> {
+        on!(&self, s => s.grid.keys().iter().map(|key| {
+            let mut out = [0; 3];
+            key.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
+            out
+        }).collect())
+    }
+
+    /// Number of the node with this integer index, if its block is active.
+    pub fn grid_find_node(&self, index: [i64; 3]) -> Option<i64> {
+        on!(&self, s => s.grid.find_node(std::array::from_fn(|d| index[d])).map(|n| n as i64))
+    }
+
+    /// Integer index of the node with this number.
+    pub fn grid_node_index(&self, node: i64) -> Option<[i64; 3]> {
+        on!(&self, s => {
+            let index = s.grid.node_index(usize::try_from(node).ok()?)?;
+            let mut out = [0; 3];
+            out[..index.len()].copy_from_slice(&index);
+            Some(out)
+        })
+    }
+
+    /// Fields of nodes.
+    pub fn node_fields(&self) -> [FieldInfo; 4] {
+        NODE_FIELDS(self.options().dimension)
+    }
+
+    /// Value of a node field at the node with this number.
+    pub fn node_value(&self, field: &str, node: i64, out: &mut [f64]) -> Result<()> {
+        on!(&self, s => s.node_value(field, node, out))
+    }
+
+    /// Mass-weighted mean of a node field at a point; false and zeros where there is no material.
+    pub fn sample(&self, field: &str, point: &[f64], out: &mut [f64]) -> Result<bool> {
+        on!(&self, s => s.sample(field, point, out))
+    }
+
+    /// Writes the particles of all bodies to a VTP file (XML, compressed).
+    pub fn write_vtp(&self, path: &Path) -> Result<()> {
+        crate::output::vtk::write(self, path)
+    }
+}
+
+impl<const D: usize> State<D> {
+    /// Place of a body among the bodies.
+    pub fn body_position(&self, id: i64) -> Result<usize> {
+        let found = self.bodies.iter().position(|b| b.id == id);
+        found.ok_or_else(|| not_found("body", id, self.bodies.iter().map(|b| b.id)))
+    }
+
+    /// The body with this id.
+    pub fn body(&self, id: i64) -> Result<&state::Body> {
+        Ok(&self.bodies[self.body_position(id)?])
+    }
+
+    fn wall_position(&self, id: i64) -> Result<usize> {
+        let found = self.walls.iter().position(|w| w.id == id);
+        found.ok_or_else(|| not_found("wall", id, self.walls.iter().map(|w| w.id)))
+    }
+}
+
+fn not_found(what: &str, id: i64, known: impl Iterator<Item = i64>) -> Error {
+    let known: Vec<String> = known.take(24).map(|k| k.to_string()).collect();
+    let list = if known.is_empty() { "there is none".into() } else { known.join(", ") };
+    Error::new(Status::NotFound, format!("no {what} has the id {id} (known: {list})"))
+}

@@ -1,0 +1,130 @@
+//! Options of a world, their defaults and their rules.
+
+use crate::error::{Error, Result};
+use crate::grid::GridPolicy;
+use crate::shape::ShapeKind;
+use crate::step::StepOrder;
+use crate::step::locate::FARTHEST;
+use crate::transfer::TransferKind;
+
+/// Options of a world.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Number of axes: 2 (plane strain, 1 m thick) or 3.
+    pub dimension: usize,
+    /// Distance h of grid nodes [m]; must be given.
+    pub spacing: f64,
+    /// Position of grid node 0 [m].
+    pub origin: [f64; 3],
+    /// Shape function.
+    pub shape: ShapeKind,
+    /// Transfer scheme.
+    pub transfer: TransferKind,
+    /// Rate at which PIC damps FLIP [1/s]: 0 is FLIP, infinity is PIC. Used by [`TransferKind::PicFlip`].
+    pub pic_rate: f64,
+    /// Order of the stages.
+    pub order: StepOrder,
+    /// Courant number of the stable time step, in (0, 1].
+    pub cfl: f64,
+    /// Gravity [m/s²].
+    pub gravity: [f64; 3],
+    /// Local non-viscous damping α, in [0, 1).
+    pub damping: f64,
+    /// How blocks come and go.
+    pub grid_policy: GridPolicy,
+    /// Lower corner of the box of a static grid [m].
+    pub box_min: [f64; 3],
+    /// Upper corner of the box of a static grid [m].
+    pub box_max: [f64; 3],
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            dimension: 3,
+            spacing: 0.0,
+            origin: [0.0; 3],
+            shape: ShapeKind::QuadraticBspline,
+            transfer: TransferKind::Apic,
+            pic_rate: 0.0,
+            order: StepOrder::Musl,
+            cfl: 0.4,
+            gravity: [0.0; 3],
+            damping: 0.0,
+            grid_policy: GridPolicy::Dynamic,
+            box_min: [0.0; 3],
+            box_max: [0.0; 3],
+        }
+    }
+}
+
+/// Most blocks of a static grid.
+const MOST_BLOCKS: f64 = 1e8;
+
+impl Options {
+    /// Whether a world can be made of these options.
+    pub fn check(&self) -> Result<()> {
+        if self.dimension != 2 && self.dimension != 3 {
+            return Err(Error::invalid(format!("dimension must be 2 or 3, got {}", self.dimension)));
+        }
+        if !(self.spacing > 0.0 && self.spacing.is_finite()) {
+            return Err(Error::invalid(format!(
+                "spacing must be positive and finite [m], got {}",
+                self.spacing
+            )));
+        }
+        if !self.origin.iter().all(|x| x.is_finite()) {
+            return Err(Error::invalid(format!("origin must be finite [m], got {:?}", self.origin)));
+        }
+        if !(self.pic_rate >= 0.0) {
+            return Err(Error::invalid(format!(
+                "pic_rate must be 0 (FLIP) or positive, infinity for PIC [1/s], got {}",
+                self.pic_rate
+            )));
+        }
+        if !(self.cfl > 0.0 && self.cfl <= 1.0) {
+            return Err(Error::invalid(format!("cfl must lie in (0, 1], got {}", self.cfl)));
+        }
+        check_gravity(self.gravity)?;
+        check_damping(self.damping)?;
+        if self.grid_policy == GridPolicy::Static { self.check_box() } else { Ok(()) }
+    }
+
+    fn check_box(&self) -> Result<()> {
+        let mut blocks = 1.0;
+        for d in 0..self.dimension {
+            let (min, max) = (self.box_min[d], self.box_max[d]);
+            let far = |x: f64| !(((x - self.origin[d]) / self.spacing).abs() < FARTHEST);
+            if far(min) || far(max) || min >= max {
+                return Err(Error::invalid(format!(
+                    "a static grid needs box_min < box_max, finite and within 8e9 cells of the origin; \
+                     along {} they are {min} and {max}",
+                    ["x", "y", "z"][d]
+                )));
+            }
+            blocks *= (max - min) / (4.0 * self.spacing) + 2.0;
+        }
+        if blocks > MOST_BLOCKS {
+            return Err(Error::invalid(format!(
+                "the static box would need {blocks:.2e} blocks, more than {MOST_BLOCKS:.0e}: use grid_policy dynamic"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// Gravity must be finite.
+pub fn check_gravity(gravity: [f64; 3]) -> Result<()> {
+    if gravity.iter().all(|g| g.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::invalid(format!("gravity must be finite [m/s^2], got {gravity:?}")))
+}
+
+/// Damping must lie in [0, 1).
+pub fn check_damping(damping: f64) -> Result<()> {
+    if (0.0..1.0).contains(&damping) {
+        return Ok(());
+    }
+    Err(Error::invalid(format!("damping must lie in [0, 1), got {damping}")))
+}

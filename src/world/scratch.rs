@@ -1,0 +1,183 @@
+//! Scratch of a chunk: what the stages hand to each other and to the material, one per thread.
+
+use std::cell::RefCell;
+
+use lahar_plugin_abi::{
+    LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY,
+};
+
+use crate::grid::TileNode;
+use crate::material::{Input, Kinematics, Material, StressBatch};
+use crate::particles::{Aligned, CHUNK, padded};
+
+/// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
+pub struct Scratch<'a> {
+    /// Number of points.
+    pub n: usize,
+    /// Distance between components.
+    pub stride: usize,
+    /// L [1/s], 9 components.
+    pub velocity_gradient: &'a mut [f64],
+    /// Δε [–], 6 components.
+    pub strain_increment: &'a mut [f64],
+    /// F at the end of the step [–], 9 components.
+    pub deformation_gradient: &'a mut [f64],
+    /// σ at the start, rotated if the model asks for that [Pa], 6 components.
+    pub stress0: &'a mut [f64],
+    /// σ at the end [Pa], 6 components.
+    pub stress1: &'a mut [f64],
+    /// State at the start.
+    pub state0: &'a mut [f64],
+    /// State at the end.
+    pub state1: &'a mut [f64],
+    /// Density at the end [kg/m³].
+    pub density: &'a mut [f64],
+    /// Grid spacing [m].
+    pub element_length: &'a mut [f64],
+    /// Wave speed [m/s].
+    pub wave_speed: &'a mut [f64],
+    /// Kinematic diffusivity [m²/s].
+    pub diffusivity: &'a mut [f64],
+    /// Stored energy per volume [J/m³].
+    pub energy: &'a mut [f64],
+    /// Wanted factor on the time step [–].
+    pub dt_factor: &'a mut [f64],
+    /// Status per point.
+    pub status: &'a mut [i32],
+    kinematics: Kinematics,
+}
+
+impl Scratch<'_> {
+    /// Sets the wanted inputs of point k: density [kg/m³] and element length [m].
+    #[inline(always)]
+    pub fn set_inputs(&mut self, k: usize, density: f64, element_length: f64) {
+        if let Some(slot) = self.density.get_mut(k) {
+            *slot = density;
+        }
+        if let Some(slot) = self.element_length.get_mut(k) {
+            *slot = element_length;
+        }
+    }
+
+    /// The start stress of point k.
+    pub fn stress0_of(&self, k: usize) -> [f64; 6] {
+        std::array::from_fn(|c| self.stress0[c * self.stride + k])
+    }
+
+    /// The batch that the material sees, with `dt` and `time` zero.
+    pub fn batch(&mut self) -> StressBatch<'_> {
+        let asked = |kind, slice| if self.kinematics == kind { slice } else { &[][..] };
+        StressBatch {
+            n: self.n,
+            stride: self.stride,
+            dt: 0.0,
+            time: 0.0,
+            strain_increment: asked(Kinematics::StrainIncrement, &*self.strain_increment),
+            velocity_gradient: asked(Kinematics::VelocityGradient, &*self.velocity_gradient),
+            deformation_gradient: &*self.deformation_gradient,
+            stress0: &*self.stress0,
+            state0: &*self.state0,
+            stress1: &mut *self.stress1,
+            state1: &mut *self.state1,
+            density: &*self.density,
+            element_length: &*self.element_length,
+            wave_speed: &mut *self.wave_speed,
+            diffusivity: &mut *self.diffusivity,
+            energy: &mut *self.energy,
+            dt_factor: &mut *self.dt_factor,
+            status: &mut *self.status,
+        }
+    }
+}
+
+#[derive(Default)]
+struct Buffers {
+    doubles: Aligned,
+    status: Vec<i32>,
+    tile: Vec<TileNode>,
+}
+
+thread_local! {
+    static BUFFERS: RefCell<Buffers> = RefCell::default();
+}
+
+/// Calls `work` with this thread's scratch for `n` points of a material. The buffers grow once and are kept.
+pub fn with_scratch<R>(
+    material: &Material,
+    n: usize,
+    work: impl FnOnce(&mut Scratch<'_>) -> R,
+) -> R {
+    with_scratch_and_tile(material, n, 0, |mut scratch, _| work(&mut scratch))
+}
+
+/// As [`with_scratch`], with a tile of `tile_nodes` nodes.
+pub fn with_scratch_and_tile<R>(
+    material: &Material,
+    n: usize,
+    tile_nodes: usize,
+    work: impl FnOnce(Scratch<'_>, &mut [TileNode]) -> R,
+) -> R {
+    let model = material.model();
+    let stride = padded(n);
+    let state = model.state_components();
+    let wants = |input| usize::from(model.inputs.contains(&input));
+    let gives = |output| usize::from(model.outputs & output != 0);
+    let gradient = if model.kinematics == Kinematics::DeformationGradient { 9 } else { 0 };
+    let sizes = [
+        9,
+        6,
+        gradient,
+        6,
+        6,
+        state,
+        state,
+        wants(Input::Density),
+        wants(Input::ElementLength),
+        1,
+        gives(LAHAR_OUTPUT_DIFFUSIVITY),
+        gives(LAHAR_OUTPUT_ENERGY),
+        gives(LAHAR_OUTPUT_DT_FACTOR),
+    ];
+    BUFFERS.with_borrow_mut(|buffers| {
+        let needed = sizes.iter().sum::<usize>() * stride;
+        if buffers.doubles.as_slice().len() < needed {
+            buffers.doubles = Aligned::zeroed(needed.max(64 * CHUNK));
+        }
+        if buffers.status.len() < stride {
+            buffers.status.resize(stride.max(CHUNK), 0);
+        }
+        if buffers.tile.len() < tile_nodes {
+            buffers.tile.resize(tile_nodes, [[0.0; 4]; 2]);
+        }
+        let mut rest = buffers.doubles.as_mut_slice();
+        let mut parts = sizes.map(|components| {
+            let (part, tail) = std::mem::take(&mut rest).split_at_mut(components * stride);
+            rest = tail;
+            part
+        });
+        let mut next = parts.iter_mut().map(std::mem::take);
+        let mut take = || next.next().unwrap_or_default();
+        let status = &mut buffers.status[..stride];
+        status.fill(0);
+        let scratch = Scratch {
+            n,
+            stride,
+            velocity_gradient: take(),
+            strain_increment: take(),
+            deformation_gradient: take(),
+            stress0: take(),
+            stress1: take(),
+            state0: take(),
+            state1: take(),
+            density: take(),
+            element_length: take(),
+            wave_speed: take(),
+            diffusivity: take(),
+            energy: take(),
+            dt_factor: take(),
+            status,
+            kinematics: model.kinematics,
+        };
+        work(scratch, &mut buffers.tile[..tile_nodes])
+    })
+}

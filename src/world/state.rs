@@ -1,0 +1,289 @@
+//! The state of a world in D dimensions: what the stages of a step work on.
+
+use std::sync::Arc;
+
+use crate::boundary::Wall;
+use crate::context::Context;
+use crate::error::Place;
+use crate::grid::key::split_node;
+use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
+use crate::material::Material;
+use crate::particles::{ChunkMut, Particles, for_each_chunk};
+use crate::step::grid_to_particles::GatherKernel;
+use crate::step::locate::Sorting;
+use crate::step::time_step::Limits;
+use crate::step::update_stress::Outcome;
+use crate::transfer::TransferKind;
+
+use super::dispatch::Kernels;
+use super::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
+use super::options::Options;
+use super::scratch::{Scratch, with_scratch_and_tile};
+
+/// Below this number of particles a step is serial: threads would cost more than they bring.
+const SERIAL_BELOW: usize = 4096;
+
+/// The place of the grid in space.
+#[derive(Clone, Copy, Debug)]
+pub struct Space<const D: usize> {
+    /// Position of node 0 [m].
+    pub origin: [f64; D],
+    /// Distance of nodes [m].
+    pub spacing: f64,
+    /// The lowest node of a stencil is floor(ξ − first_offset).
+    pub first_offset: f64,
+    /// Distance, in cells, at which nodes feel a wall.
+    pub wall_reach: f64,
+}
+
+impl<const D: usize> Space<D> {
+    /// Position in units of the spacing, from node 0.
+    #[inline(always)]
+    pub fn to_units(&self, x: [f64; D]) -> [f64; D] {
+        std::array::from_fn(|d| (x[d] - self.origin[d]) / self.spacing)
+    }
+}
+
+/// A body: particles of one material.
+pub struct Body {
+    /// Id, never reused.
+    pub id: i64,
+    /// The material.
+    pub material: Arc<Material>,
+    /// The particles, sorted by block.
+    pub particles: Particles,
+    /// Particles of each block.
+    pub runs: Vec<Run>,
+}
+
+/// A wall with its id and the force that it put on the material in the last step [N].
+#[derive(Clone, Copy, Debug)]
+pub struct WallEntry {
+    /// Id, never reused.
+    pub id: i64,
+    /// The wall.
+    pub wall: Wall,
+    /// Force on the material [N].
+    pub reaction: [f64; 3],
+}
+
+/// A world in D dimensions.
+pub struct State<const D: usize> {
+    /// Threads, log and plugins.
+    pub context: Arc<Context>,
+    /// Options as they are now.
+    pub options: Options,
+    /// Kernels of the shape function.
+    pub kernels: Kernels<D>,
+    /// The grid.
+    pub grid: Grid<D>,
+    /// The tiles.
+    pub tiles: Tiles,
+    /// The bodies, in the order in which they were added.
+    pub bodies: Vec<Body>,
+    /// The walls, in the order in which they were added.
+    pub walls: Vec<WallEntry>,
+    /// Momentum that walls gave to the nodes of each block in a step.
+    pub impulses: Vec<[f64; 3]>,
+    /// Buffers of the sort.
+    pub sorting: Sorting<D>,
+    /// Blocks of the box of a static grid that particles may stand in.
+    pub static_blocks: Vec<Key<D>>,
+    /// Particles came or went since the last sort.
+    pub regroup: bool,
+    /// Whether steps use the threads of the context.
+    pub parallel: bool,
+    /// Nodes with no more mass than this are empty [kg].
+    pub mass_floor: f64,
+    /// Limits of the next time step; None if the host changed something since they were found.
+    pub limits: Option<Limits>,
+    /// Time [s].
+    pub time: f64,
+    /// Number of steps.
+    pub step_count: i64,
+    hooks: [Option<Hook>; HOOK_POINTS],
+}
+
+impl<const D: usize> State<D> {
+    /// An empty world. The options have been checked.
+    pub fn new(context: Arc<Context>, options: Options) -> Self {
+        let origin = std::array::from_fn(|d| options.origin[d]);
+        let mut world = Self {
+            kernels: Kernels::new(options.shape),
+            grid: Grid::new(options.spacing, origin),
+            tiles: Tiles::new(options.shape.nodes()),
+            context,
+            options,
+            bodies: Vec::new(),
+            walls: Vec::new(),
+            impulses: Vec::new(),
+            sorting: Sorting::default(),
+            static_blocks: Vec::new(),
+            regroup: true,
+            parallel: false,
+            mass_floor: 0.0,
+            limits: None,
+            time: 0.0,
+            step_count: 0,
+            hooks: [const { None }; HOOK_POINTS],
+        };
+        if world.options.grid_policy == GridPolicy::Static {
+            world.static_blocks = world.blocks_of_box();
+        }
+        world
+    }
+
+    /// Origin, spacing and the two figures of the shape function.
+    pub fn space(&self) -> Space<D> {
+        Space {
+            origin: self.grid.origin,
+            spacing: self.options.spacing,
+            first_offset: self.options.shape.first_offset(),
+            wall_reach: self.options.shape.wall_reach(),
+        }
+    }
+
+    /// Whether a position lies in the box of a static grid; true for other grids.
+    pub fn inside_box(&self, x: &[f64; D]) -> bool {
+        let (min, max) = (&self.options.box_min, &self.options.box_max);
+        self.options.grid_policy != GridPolicy::Static
+            || (0..D).all(|d| min[d] <= x[d] && x[d] <= max[d])
+    }
+
+    fn blocks_of_box(&self) -> Vec<Key<D>> {
+        let space = self.space();
+        let block = |corner: [f64; 3]| -> [i64; D] {
+            let xi = space.to_units(std::array::from_fn(|d| corner[d]));
+            xi.map(|x| split_node((x - space.first_offset).floor() as i64).0)
+        };
+        let (low, high) = (block(self.options.box_min), block(self.options.box_max));
+        let count: [i64; D] = std::array::from_fn(|d| high[d] - low[d] + 1);
+        (0..count.iter().product())
+            .map(|flat: i64| {
+                let mut rest = flat;
+                let mut key = [0; D];
+                for d in (0..D).rev() {
+                    key[d] = (low[d] + rest % count[d]) as i32;
+                    rest /= count[d];
+                }
+                key
+            })
+            .collect()
+    }
+
+    /// Number and step of what happens now, for errors.
+    pub fn place(&self) -> Place {
+        Place { step: Some(self.step_count), time: Some(self.time), ..Place::default() }
+    }
+
+    /// Number of particles of all bodies.
+    pub fn particle_count(&self) -> usize {
+        self.bodies.iter().map(|b| b.particles.len()).sum()
+    }
+
+    /// Whether a step of this world uses the threads of the context.
+    pub fn parallel(&self) -> bool {
+        self.parallel
+    }
+
+    /// To be called when particles came or went.
+    pub fn particles_changed(&mut self) {
+        self.regroup = true;
+        self.limits = None;
+        self.parallel = self.context.threads() > 1 && self.particle_count() >= SERIAL_BELOW;
+        self.find_mass_floor();
+    }
+
+    /// Nodes lighter than 1e-14 of the heaviest particle count as empty.
+    pub fn find_mass_floor(&mut self) {
+        let heaviest = |b: &Body| {
+            b.particles.column(b.particles.layout.mass).iter().fold(0.0, |m, v| f64::max(m, *v))
+        };
+        self.mass_floor = 1e-14 * self.bodies.iter().map(heaviest).fold(0.0, f64::max);
+    }
+
+    /// Sets the hook of a point.
+    pub fn set_hook(&mut self, point: HookPoint, hook: Option<Hook>) {
+        self.hooks[point as usize] = hook;
+    }
+
+    /// Runs the hook of a point, if there is one.
+    pub fn hook(&mut self, point: HookPoint, dt: f64) {
+        if let Some(hook) = &mut self.hooks[point as usize] {
+            hook(HookArguments { time: self.time, dt, nodes: &mut self.grid });
+        }
+    }
+
+    /// Runs the last stages of a step on every chunk of every body.
+    pub fn for_each_chunk(
+        &mut self,
+        work: impl Fn(&mut Piece<'_, '_, D>) -> Outcome + Sync,
+    ) -> Outcome {
+        let (space, edge) = (self.space(), self.tiles.edge);
+        let tile_nodes = self.tiles.tile_nodes(D);
+        let Self { bodies, grid, options, kernels, context, time, parallel, .. } = self;
+        let mut outcome = Outcome::default();
+        for body in bodies {
+            let Body { id, material, particles, runs } = body;
+            let (ids, chunk) = particles.ids_and_chunk();
+            let on_chunk = |chunk: ChunkMut<'_>| {
+                if *parallel {
+                    context.mark_worker();
+                }
+                with_scratch_and_tile(material, chunk.len, tile_nodes, |scratch, tile| {
+                    work(&mut Piece {
+                        chunk,
+                        scratch,
+                        tile,
+                        body: *id,
+                        ids,
+                        material,
+                        runs,
+                        grid,
+                        space,
+                        edge,
+                        gather: kernels.gather,
+                        transfer: options.transfer,
+                        pic_rate: options.pic_rate,
+                        time: *time,
+                    })
+                })
+            };
+            let of_body = for_each_chunk(chunk, *parallel, &on_chunk, &Outcome::merge);
+            outcome = outcome.merge(of_body);
+        }
+        outcome
+    }
+}
+
+/// A chunk of particles on its way through the last stages of a step.
+pub struct Piece<'c, 's, const D: usize> {
+    /// The particles.
+    pub chunk: ChunkMut<'c>,
+    /// What the stages hand to each other.
+    pub scratch: Scratch<'s>,
+    /// Room for a copy of the grid around a block.
+    pub tile: &'s mut [TileNode],
+    /// Id of the body.
+    pub body: i64,
+    /// Ids of all particles of the body, in storage order.
+    pub ids: &'c [i64],
+    /// The material.
+    pub material: &'c Material,
+    /// The runs of the body.
+    pub runs: &'c [Run],
+    /// The grid.
+    pub grid: &'c Grid<D>,
+    /// Origin and spacing.
+    pub space: Space<D>,
+    /// Nodes along the edge of a tile.
+    pub edge: usize,
+    /// The gather of the shape function.
+    pub gather: GatherKernel<D>,
+    /// The transfer scheme.
+    pub transfer: TransferKind,
+    /// Rate of PIC [1/s].
+    pub pic_rate: f64,
+    /// Time at the start of the step [s].
+    pub time: f64,
+}

@@ -1,0 +1,4 @@
+/* A mandatory function is missing. */
+#include "minimal.h"
+
+static void spoil(void) { model.update = NULL; }

@@ -1,0 +1,4 @@
+/* The mandatory output is not declared. */
+#include "minimal.h"
+
+static void spoil(void) { model.outputs = 0; }

@@ -1,0 +1,9 @@
+/* The entry returns NULL and does not say why. */
+#include "lahar/lahar_plugin.h"
+
+#include <stddef.h>
+
+const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host) {
+  (void)host;
+  return NULL;
+}

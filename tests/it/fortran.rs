@@ -1,0 +1,270 @@
+//! `lahar.f90` says what `lahar.h` says, and compiles as strictly as gfortran can.
+//!
+//! gfortran cannot compare a `bind(c)` interface with a C prototype, so names, the order, number and kinds of arguments, the
+//! fields and sizes of structs, and the constants are compared here, by a reader that shares nothing with the generator.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const STRICT: [&str; 4] = ["-std=f2018", "-Wall", "-Werror", "-fimplicit-none"];
+
+/// A name and what stands behind it: `("dt", "f64")`.
+type Named = (String, &'static str);
+
+#[test]
+fn every_function_has_its_interface_with_the_same_arguments() {
+    let header = prototypes(&read("include/lahar/lahar.h"));
+    let module = interfaces(&read("include/lahar/lahar.f90"));
+    assert!(header.len() > 40, "only {} prototypes were found", header.len());
+    assert_eq!(header, module);
+}
+
+#[test]
+fn every_constant_has_the_same_value() {
+    let header = read("include/lahar/lahar.h");
+    let in_header: BTreeMap<&str, i64> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("#define ")?.split_once(' '))
+        .filter_map(|(name, value)| Some((name, value.parse().ok()?)))
+        .collect();
+    let module = read("include/lahar/lahar.f90");
+    let in_module: BTreeMap<&str, i64> = module
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("integer(")?.split_once(":: LAHAR_"))
+        .filter_map(|(_, rest)| rest.split_once(" = "))
+        .map(|(name, value)| (name, value.split('_').next().unwrap().parse().unwrap()))
+        .collect();
+    let in_module: BTreeMap<String, i64> =
+        in_module.into_iter().map(|(name, value)| (format!("LAHAR_{name}"), value)).collect();
+    let in_header: BTreeMap<String, i64> =
+        in_header.into_iter().map(|(name, value)| (name.to_string(), value)).collect();
+    assert!(in_header.len() > 30, "only {} constants were found", in_header.len());
+    assert_eq!(in_header, in_module);
+}
+
+#[test]
+fn every_struct_has_the_same_fields_and_size() {
+    let header = read("include/lahar/lahar.h");
+    let in_header = structs(&without_comments(&header));
+    assert!(in_header.len() > 10, "only {} structs were found", in_header.len());
+    assert_eq!(in_header, derived_types(&read("include/lahar/lahar.f90")));
+
+    let sizes: BTreeMap<String, u64> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("LAHAR_ASSERT_LAYOUT(sizeof(")?.split_once(") == "))
+        .map(|(name, size)| (name.to_string(), size.trim_end_matches(");").parse().unwrap()))
+        .collect();
+    let program: String = sizes
+        .iter()
+        .map(|(name, size)| {
+            format!(
+                "block\n  type({name}) :: s\n  if (c_sizeof(s) /= {size}) error stop '{name}'\nend block\n"
+            )
+        })
+        .collect();
+    let program = format!(
+        "program sizes\nuse, intrinsic :: iso_c_binding\nuse lahar\nimplicit none\n{program}end program\n"
+    );
+    let folder = Folder::new("fortran_sizes");
+    fs::write(folder.0.join("sizes.f90"), program).unwrap();
+    compile(&folder.0, &["sizes.f90"], "sizes");
+    run(&mut Command::new(folder.0.join("sizes")));
+}
+
+#[test]
+fn the_module_compiles_without_warnings_at_every_level_of_optimisation() {
+    for level in ["-O0", "-O2"] {
+        let folder = Folder::new(&format!("fortran{level}"));
+        let mut compiler = Command::new("gfortran");
+        compiler.args(STRICT).arg(level).arg("-c").arg(root().join("include/lahar/lahar.f90"));
+        run(compiler.current_dir(&folder.0));
+    }
+}
+
+/// Compiles sources in `folder` with the module, by the documented line and stricter.
+fn compile(folder: &Path, sources: &[&str], program: &str) {
+    let release = release_folder();
+    let mut compiler = Command::new("gfortran");
+    compiler.args(STRICT).arg("-O2").arg(root().join("include/lahar/lahar.f90")).args(sources);
+    compiler.args(["-o", program]).arg(format!("-L{}", release.display())).arg("-llahar");
+    compiler.arg(format!("-Wl,-rpath,{}", release.display()));
+    run(compiler.current_dir(folder));
+}
+
+/// The folder of `liblahar.so`: two above the test's executable, `target/release/deps/it-...`.
+fn release_folder() -> PathBuf {
+    let exe = std::env::current_exe().expect("the test knows where it stands");
+    exe.parent().and_then(Path::parent).expect("target/release").to_path_buf()
+}
+
+/// A folder of its own for a test, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("lahar_{name}_{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a folder for the test");
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn run(command: &mut Command) {
+    let output = command.output().unwrap_or_else(|e| panic!("cannot start {command:?}: {e}"));
+    let (out, err) = (&output.stdout, &output.stderr);
+    let text = format!("{}{}", String::from_utf8_lossy(out), String::from_utf8_lossy(err));
+    assert!(output.status.success(), "{command:?} ended with {}:\n{text}", output.status);
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+// ---- the header
+
+fn without_comments(text: &str) -> String {
+    let mut code = String::new();
+    let mut in_block = false;
+    for line in text.lines() {
+        let mut line = line;
+        if in_block {
+            let Some((_, rest)) = line.split_once("*/") else { continue };
+            line = rest;
+            in_block = false;
+        }
+        let line = line.split("//").next().unwrap_or_default();
+        let line = match line.split_once("/*") {
+            Some((before, after)) => {
+                in_block = !after.contains("*/");
+                before
+            }
+            None => line,
+        };
+        if !line.starts_with('#') && !line.starts_with("LAHAR_ASSERT") {
+            code.push_str(line);
+            code.push(' ');
+        }
+    }
+    code
+}
+
+fn prototypes(header: &str) -> BTreeMap<String, Vec<Named>> {
+    let mut found = BTreeMap::new();
+    for statement in without_comments(header).split(';') {
+        let statement = statement.rsplit('}').next().unwrap_or_default();
+        if statement.contains("typedef") || statement.contains('{') && !statement.contains("\"C\"")
+        {
+            continue;
+        }
+        let Some((head, rest)) = statement.split_once('(') else { continue };
+        let name = last_word(head);
+        let list = rest.trim_end().trim_end_matches(')').trim();
+        let list = if list == "void" { "" } else { list };
+        let arguments = list.split(',').filter(|text| !text.trim().is_empty()).map(c_variable);
+        found.insert(name, arguments.collect());
+    }
+    found
+}
+
+fn structs(code: &str) -> BTreeMap<String, Vec<Named>> {
+    let mut found = BTreeMap::new();
+    for part in code.split("typedef struct ").skip(1) {
+        let Some((name, rest)) = part.split_once('{') else { continue };
+        if name.contains(';') {
+            continue;
+        }
+        let fields = rest.split('}').next().unwrap_or_default();
+        let fields = fields.split(';').filter(|field| !field.trim().is_empty());
+        // A pointer to numbers or to a text is a type(c_ptr) in a struct.
+        let fields = fields.map(|field| match (c_variable(field), field.contains('*')) {
+            ((name, _), true) => (name, "other"),
+            (variable, false) => variable,
+        });
+        found.insert(name.trim().to_string(), fields.collect());
+    }
+    found
+}
+
+/// Name and kind of `const double stress[6]`: a pointer has the kind of what it points at, but a handle is "ptr".
+fn c_variable(text: &str) -> Named {
+    let declarator = text.split('[').next().unwrap_or_default();
+    let words: Vec<&str> = declarator.split([' ', '*']).filter(|word| !word.is_empty()).collect();
+    let base = words[..words.len() - 1].iter().find(|w| !["const", "struct"].contains(w));
+    let kind = match *base.unwrap_or(&"") {
+        "double" => "f64",
+        "int64_t" | "uint64_t" => "i64",
+        "int32_t" | "uint32_t" | "lahar_status" => "i32",
+        "char" if declarator.matches('*').count() == 1 => "char",
+        _ => "other",
+    };
+    (last_word(declarator), kind)
+}
+
+fn last_word(text: &str) -> String {
+    let word = text.trim_end().rsplit(|c: char| !c.is_alphanumeric() && c != '_').next();
+    word.unwrap_or_default().to_string()
+}
+
+// ---- the module
+
+fn interfaces(module: &str) -> BTreeMap<String, Vec<Named>> {
+    let lines: Vec<&str> = module.lines().map(str::trim).collect();
+    let mut found = BTreeMap::new();
+    for (index, line) in lines.iter().enumerate() {
+        let Some(rest) = line.strip_prefix("bind(c, name=\"") else { continue };
+        let name = rest.split('"').next().unwrap_or_default();
+        let head = lines[index - 1];
+        let (_, list) = head.split_once('(').expect("a list of arguments");
+        let list = list.split(')').next().unwrap_or_default();
+        let body: Vec<Named> = lines[index..]
+            .iter()
+            .take_while(|l| !l.starts_with("end "))
+            .flat_map(declared)
+            .collect();
+        assert!(lines[index..index + 3].contains(&"implicit none"), "no implicit none in {name}");
+        let arguments = list.split(',').map(str::trim).filter(|a| !a.is_empty());
+        let arguments = arguments.map(|argument| {
+            let of_name = body.iter().find(|(name, _)| name == argument);
+            of_name.unwrap_or_else(|| panic!("{name}: {argument} is not declared")).clone()
+        });
+        found.insert(name.to_string(), arguments.collect());
+    }
+    found
+}
+
+fn derived_types(module: &str) -> BTreeMap<String, Vec<Named>> {
+    let mut found = BTreeMap::new();
+    for part in module.split("type, bind(c), public :: ").skip(1) {
+        let (name, rest) = part.split_once('\n').expect("lines");
+        let fields = rest.lines().map(str::trim).take_while(|line| !line.starts_with("end type"));
+        found.insert(name.to_string(), fields.filter_map(|line| declared(&line)).collect());
+    }
+    found
+}
+
+/// Name and kind of `real(c_double), intent(in) :: x(3)`.
+fn declared(line: &&str) -> Option<Named> {
+    let (kind, name) = line.split_once(" :: ")?;
+    if kind.starts_with("import") {
+        return None;
+    }
+    let kind = match kind.split([',', ' ']).next()? {
+        "real(c_double)" => "f64",
+        "integer(c_int64_t)" => "i64",
+        "integer(c_int32_t)" => "i32",
+        "character(kind=c_char)" => "char",
+        _ => "other",
+    };
+    Some((name.split(['(', ' ']).next()?.to_string(), kind))
+}

@@ -1,0 +1,53 @@
+//! What was measured on: date, commit and processor, for the heading of a table.
+
+use crate::process;
+use std::fmt;
+use std::process::{Command, Stdio};
+
+/// The heading of a run.
+pub struct Machine {
+    date: String,
+    commit: String,
+    processor: String,
+    cores: usize,
+}
+
+impl Machine {
+    /// Reads what the system tells; what it does not tell is "unknown".
+    pub fn read() -> Self {
+        let processor = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+            let line = text.lines().find(|line| line.starts_with("model name"))?;
+            Some(line.split_once(':')?.1.trim().to_string())
+        });
+        Self {
+            date: first_line("date", &["-u", "+%F"]),
+            commit: first_line("git", &["describe", "--always", "--dirty"]),
+            processor: processor.unwrap_or_else(|| "unknown processor".to_string()),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+        }
+    }
+
+    /// The same for programs.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "date": self.date, "commit": self.commit, "processor": self.processor, "cores": self.cores,
+        })
+    }
+}
+
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {}, {}, {} cores", self.date, self.commit, self.processor, self.cores)
+    }
+}
+
+fn first_line(program: &str, arguments: &[&str]) -> String {
+    let output = Command::new(program)
+        .args(arguments)
+        .current_dir(process::root())
+        .stderr(Stdio::null())
+        .output();
+    let text = output.ok().filter(|output| output.status.success()).map(|output| output.stdout);
+    let text = text.map(|bytes| String::from_utf8_lossy(&bytes).trim().to_string());
+    text.filter(|text| !text.is_empty()).unwrap_or_else(|| "unknown".to_string())
+}

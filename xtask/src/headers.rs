@@ -1,0 +1,270 @@
+//! The C headers, generated: `include/lahar/lahar.h` from `src/ffi`, `include/lahar/lahar_plugin.h` from `plugins/abi`.
+//!
+//! cbindgen translates one Rust file at a time, so that the header has the sections of `src/ffi`; the sizes and offsets
+//! that the headers assert come from `src/ffi/layout.rs`, where Rust asserts them too. The list of exported symbols,
+//! `include/lahar/symbols.txt`, is made from the same sources.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Files of `src/ffi` in the order of the header: a type stands before its first use.
+const SECTIONS: [&str; 13] = [
+    "status", "version", "context", "error", "model", "material", "world", "body", "field", "view",
+    "wall", "grid", "output",
+];
+
+/// Writes the headers and the symbol list, or with `check` reports those that differ from the sources.
+pub fn run(check: bool) -> Result<(), String> {
+    let root = root()?;
+    let folder = root.join("include/lahar");
+    let symbols = symbols(&root)?;
+    let files = [
+        ("lahar.h", host_header(&root)?),
+        ("lahar_plugin.h", plugin_header(&root)?),
+        ("symbols.txt", symbols),
+    ];
+    let mut stale = Vec::new();
+    for (name, text) in files {
+        let path = folder.join(name);
+        let is_same = std::fs::read_to_string(&path).is_ok_and(|old| old == text);
+        if is_same {
+            continue;
+        }
+        if check {
+            stale.push(name);
+        } else {
+            std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+            std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        }
+    }
+    match stale.is_empty() {
+        true => Ok(()),
+        false => Err(format!(
+            "{} differ from src/ffi and plugins/abi; run `cargo xtask headers`",
+            stale.join(", ")
+        )),
+    }
+}
+
+fn root() -> Result<PathBuf, String> {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let parent = package.parent().ok_or_else(|| format!("{} has no parent", package.display()))?;
+    Ok(parent.to_path_buf())
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn host_header(root: &Path) -> Result<String, String> {
+    let mut text = format!("{HOST_INTRODUCTION}{}", opening("LAHAR_H"));
+    for section in SECTIONS {
+        let path = root.join(format!("src/ffi/{section}.rs"));
+        write_section(&mut text, section, &path, &[])?;
+    }
+    let layout = read(&root.join("src/ffi/layout.rs"))?;
+    text += &asserts(&layout, "super::public")?;
+    text += &closing("LAHAR_H");
+    Ok(text)
+}
+
+fn plugin_header(root: &Path) -> Result<String, String> {
+    let path = root.join("plugins/abi/src/lib.rs");
+    let source = read(&path)?;
+    let named = |line: &str| {
+        let rest = line.strip_prefix("pub struct ").or_else(|| line.strip_prefix("pub type "))?;
+        Some(rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?.to_string())
+    };
+    let types: Vec<String> = source.lines().filter_map(named).collect();
+    let mut text = format!("{PLUGIN_INTRODUCTION}{}", opening("LAHAR_PLUGIN_H"));
+    write_section(&mut text, "plugin", &path, &types)?;
+    text += PLUGIN_ENTRY;
+    let layout = read(&root.join("src/ffi/layout.rs"))?;
+    text += &asserts(&layout, "lahar_plugin_abi")?;
+    text += &closing("LAHAR_PLUGIN_H");
+    Ok(text)
+}
+
+/// One file's items under a banner with its module documentation.
+fn write_section(
+    text: &mut String,
+    name: &str,
+    path: &Path,
+    types: &[String],
+) -> Result<(), String> {
+    let source = read(path)?;
+    let about = source.lines().map_while(|l| l.strip_prefix("//!")).map(|l| l.trim_end());
+    let rule = "-".repeat(100usize.saturating_sub(name.len() + 10));
+    let _ = write!(text, "\n/* ---- {name} {rule}\n *\n");
+    for line in about {
+        let _ = writeln!(text, " *{line}");
+    }
+    text.push_str(" */\n\n");
+    let generated = translate(path, types)?;
+    text.push_str(generated.trim());
+    text.push('\n');
+    Ok(())
+}
+
+/// cbindgen's C for one Rust file, with every type called by its typedef.
+fn translate(path: &Path, types: &[String]) -> Result<String, String> {
+    let mut config = cbindgen::Config {
+        language: cbindgen::Language::C,
+        style: cbindgen::Style::Both,
+        no_includes: true,
+        documentation_style: cbindgen::DocumentationStyle::C99,
+        line_length: 110,
+        tab_width: 4,
+        ..Default::default()
+    };
+    config.export.include = types.to_vec();
+    config.function.sort_by = Some(cbindgen::SortKey::None);
+    config.constant.sort_by = Some(cbindgen::SortKey::None);
+    let bindings = cbindgen::Builder::new()
+        .with_config(config)
+        .with_src(path)
+        .generate()
+        .map_err(|e| format!("{}: {e}", path.display()))?;
+    let mut bytes = Vec::new();
+    bindings.write(&mut bytes);
+    let text = String::from_utf8(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+    let mut out = String::new();
+    let mut lines = text.lines().map(str::trim_end).peekable();
+    while let Some(line) = lines.next() {
+        // What cbindgen's annotations leave behind: an empty comment line before the declaration.
+        if line == "//" && lines.peek().is_some_and(|next| !next.starts_with("//")) {
+            continue;
+        }
+        let is_code = !line.starts_with("typedef struct") && !line.trim_start().starts_with("//");
+        let line = if is_code { line.replace("struct lahar_", "lahar_") } else { line.to_string() };
+        out.push_str(&line);
+        out.push('\n');
+    }
+    Ok(out)
+}
+
+/// Static assertions from one block of `src/ffi/layout.rs`.
+fn asserts(layout: &str, module: &str) -> Result<String, String> {
+    let start = layout
+        .find(&format!("    {module},\n"))
+        .ok_or_else(|| format!("layout.rs: no block {module}"))?;
+    let block = &layout[start..];
+    let block = &block[..block.find("\n}\n").ok_or("layout.rs: a block is not closed")?];
+    let words = block.split_whitespace().skip(1).map(|w| w.trim_end_matches([',', ':']));
+    let mut lines = String::new();
+    let mut current = "";
+    let mut words = words.peekable();
+    while let Some(word) = words.next() {
+        match word {
+            "{" => {}
+            "}" => current = "",
+            name => {
+                let number =
+                    words.next().ok_or_else(|| format!("layout.rs: {name} has no number"))?;
+                let what = match current {
+                    "" => format!("sizeof({name})"),
+                    of => format!("offsetof({of}, {name})"),
+                };
+                if current.is_empty() {
+                    current = name;
+                }
+                let _ = writeln!(lines, "LAHAR_ASSERT_LAYOUT({what} == {number});");
+            }
+        }
+    }
+    Ok(format!("\n{ASSERTS_OPEN}{lines}{ASSERTS_CLOSE}"))
+}
+
+fn opening(guard: &str) -> String {
+    format!(
+        "#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n#include <stdint.h>\n\n\
+         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n"
+    )
+}
+
+fn closing(guard: &str) -> String {
+    format!("\n#ifdef __cplusplus\n}} /* extern \"C\" */\n#endif\n\n#endif /* {guard} */\n")
+}
+
+/// The names of all `extern "C"` functions of `src/ffi`, sorted, one a line.
+fn symbols(root: &Path) -> Result<String, String> {
+    let mut names = Vec::new();
+    for section in SECTIONS {
+        let source = read(&root.join(format!("src/ffi/{section}.rs")))?;
+        for part in source.split("extern \"C\" fn lahar_").skip(1) {
+            let end = part.find('(').unwrap_or(0);
+            names.push(format!("lahar_{}\n", &part[..end]));
+        }
+    }
+    names.sort();
+    Ok(names.concat())
+}
+
+const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a material point method engine.
+ *
+ * Generated from src/ffi by `cargo xtask headers`; do not edit.
+ *
+ * Statuses. Functions return a lahar_status: 0 done; positive: refused, nothing has changed; negative: the object is
+ * poisoned, it answers queries and can be freed. lahar_last_error_message tells what was expected, what was received and
+ * what to do. Nothing prints, exits or aborts.
+ *
+ * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. `create` sets its output to NULL first,
+ * and to the object only if it succeeds. `free` ignores NULL; freeing in any order is safe, children keep their parents
+ * alive. A handle must not be used after it was freed. Bodies and walls are int64_t ids, never used again.
+ *
+ * Pointers must not be NULL unless it is said. Arrays of the host are read or written during the call only. Texts are
+ * NUL-terminated UTF-8. Texts that lahar returns by pointer are static: they live as long as the process.
+ *
+ * Structs begin with `struct_size`, their sizeof, so that they can grow at the end. Structs with an init function are
+ * filled by it; in the others, which lahar fills, the host sets `struct_size` and lahar zeroes what it does not know.
+ *
+ * Units are SI in this text; any consistent ones may be used. Tension is positive. Symmetric tensors have the components
+ * xx, yy, zz, xy, yz, zx, in two dimensions too.
+ *
+ * Threads. Each function has a tag.
+ *   Thread: any          from any thread at any time, and from callbacks
+ *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another thread changes the
+ *                        object
+ *   Thread: owner        changes or frees the object: by one thread at a time (another gets LAHAR_ERROR_BUSY, except from
+ *                        a free, before which the host must have ended all other use), not from callbacks
+ *
+ * Floating point. Every function saves the host's environment (rounding, traps), works in the default one, and restores
+ * the host's; callbacks run in the host's.
+ */
+
+"#;
+
+const PLUGIN_INTRODUCTION: &str = r#"/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
+ *
+ * Generated from plugins/abi by `cargo xtask headers`; do not edit.
+ */
+
+"#;
+
+const PLUGIN_ENTRY: &str = r#"
+#if defined(_WIN32)
+#define LAHAR_PLUGIN_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define LAHAR_PLUGIN_EXPORT __attribute__((visibility("default")))
+#else
+#define LAHAR_PLUGIN_EXPORT
+#endif
+
+// The one function that a plugin defines: its tables, or NULL to refuse, after `set_error`.
+// [one thread at a time, once in a process]
+LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
+"#;
+
+const ASSERTS_OPEN: &str = r#"/* ---- layout: what the library was built with, on 64-bit systems */
+
+#if UINTPTR_MAX > 0xffffffffu
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define LAHAR_ASSERT_LAYOUT(condition) static_assert(condition, #condition)
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define LAHAR_ASSERT_LAYOUT(condition) _Static_assert(condition, #condition)
+#endif
+#endif
+#ifdef LAHAR_ASSERT_LAYOUT
+"#;
+
+const ASSERTS_CLOSE: &str = "#undef LAHAR_ASSERT_LAYOUT\n#endif\n";

@@ -1,0 +1,61 @@
+//! The tasks of the repository: `cargo xtask <task>`.
+//!
+//! Each task is one file. A task returns the text of what went wrong; the process then ends with status 1.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
+
+mod bench;
+mod checks;
+mod demo;
+mod fortran;
+mod headers;
+mod picture;
+mod process;
+mod setup;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Tasks of the lahar repository")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Finds what is missing on Debian 12 and installs it, or prints the line that does
+    Setup,
+    /// Builds lahar, runs a sand column collapse from C and draws it
+    Demo,
+    /// Builds the workspace and runs every test
+    Test,
+    /// Formatting, lints, headers, then every test
+    Ci,
+    /// Writes the C headers and the Fortran bindings from the Rust sources
+    Headers {
+        /// Only compares with the committed files
+        #[arg(long)]
+        check: bool,
+    },
+    /// Measures nanoseconds per particle and step
+    Bench(bench::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().task {
+        Task::Setup => setup::run(setup::Need::Tests),
+        Task::Demo => demo::run(),
+        Task::Test => checks::test(),
+        Task::Ci => checks::ci(),
+        Task::Headers { check } => checks::headers(check),
+        Task::Bench(arguments) => bench::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
