@@ -108,7 +108,9 @@ impl Context {
             return Ok(index);
         }
         for model in &plugin.models {
-            if let Some(other) = plugins.iter().find(|p| p.models.iter().any(|m| m.name == model.name)) {
+            if let Some(other) =
+                plugins.iter().find(|p| p.models.iter().any(|m| m.name == model.name))
+            {
                 return Err(Error::new(
                     Status::PluginInvalid,
                     format!(

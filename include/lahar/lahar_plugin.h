@@ -310,7 +310,7 @@ typedef struct lahar_plugin_desc {
 } lahar_plugin_desc;
 
 // Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
-// [one thread at a time, once in a process]
+// [one thread at a time; once in a process, again only after it has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *host);
 
 #if defined(_WIN32)

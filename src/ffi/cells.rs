@@ -248,3 +248,90 @@ fn view_open(count: i64, what: &str, action: &str) -> Error {
         format!("{count} {what}(s) open; free them with lahar_view_free before {action}"),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::entry::entry;
+    use super::*;
+    use crate::world::options::Options;
+
+    fn cell() -> Arc<WorldCell> {
+        let context = ContextCell::new(Context::new(Some(1)).expect("a context"));
+        let options = Options { spacing: 1.0, ..Options::default() };
+        let world = World::new(&context.context, &options).expect("a world");
+        WorldCell::new(context, world)
+    }
+
+    fn status(result: Result<()>) -> Status {
+        result.map_or_else(|error| error.status, |()| Status::Ok)
+    }
+
+    #[test]
+    fn a_panic_in_a_mutating_call_poisons_the_world_and_queries_go_on() {
+        let cell = cell();
+        let code = entry("lahar_test", |scope| {
+            scope.attach_world(&cell);
+            cell.change(Change::Values, |_| panic!("on purpose"))
+        });
+        assert_eq!(code, Status::Panic as i32);
+        assert!(cell.context.last_error().expect("an error").message.contains("on purpose"));
+        assert_eq!(status(cell.change(Change::Values, |_| Ok(()))), Status::Poisoned);
+        assert_eq!(cell.query(|w| Ok(w.time())), Ok(0.0));
+        assert_eq!(status(cell.query_order(|_| Ok(()))), Status::Ok);
+    }
+
+    #[test]
+    fn a_panic_in_a_query_poisons_the_world_too() {
+        let cell = cell();
+        entry("lahar_test", |scope| {
+            scope.attach_world(&cell);
+            cell.query(|_| panic!("on purpose"))
+        });
+        assert_eq!(status(cell.change(Change::Step, |_| Ok(()))), Status::Poisoned);
+        assert_eq!(status(cell.query(|_| Ok(()))), Status::Ok);
+    }
+
+    #[test]
+    fn queries_run_together_and_a_mutating_call_runs_alone() {
+        let cell = cell();
+        let inside = |_: &World| {
+            assert_eq!(status(cell.query(|_| Ok(()))), Status::Ok);
+            assert_eq!(status(cell.change(Change::Values, |_| Ok(()))), Status::Busy);
+            Ok(())
+        };
+        assert_eq!(status(cell.query(inside)), Status::Ok);
+        let inside = |_: &mut World| {
+            assert_eq!(status(cell.query(|_| Ok(()))), Status::Busy);
+            assert_eq!(status(cell.change(Change::Values, |_| Ok(()))), Status::Busy);
+            Ok(())
+        };
+        assert_eq!(status(cell.change(Change::Values, inside)), Status::Ok);
+    }
+
+    #[test]
+    fn open_views_forbid_what_would_move_their_memory() {
+        let cell = cell();
+        let allowed = || {
+            [Change::Values, Change::Step, Change::Bodies]
+                .map(|c| status(cell.change(c, |_| Ok(()))))
+        };
+        let reading = OpenView::new(&cell, false);
+        assert_eq!(allowed(), [Status::Ok, Status::Ok, Status::ViewOpen]);
+        let writing = OpenView::new(&cell, true);
+        assert_eq!(allowed(), [Status::Ok, Status::ViewOpen, Status::ViewOpen]);
+        drop((reading, writing));
+        assert_eq!(allowed(), [Status::Ok; 3]);
+    }
+
+    #[test]
+    fn a_refused_step_leaves_the_generation_and_a_step_changes_it() {
+        let cell = cell();
+        cell.change(Change::Step, World::refresh).expect("an empty world is made fresh");
+        let before = cell.generation();
+        let refuse = |_: &mut World| Err::<(), _>(Error::new(Status::StepTooLarge, ""));
+        assert_eq!(status(cell.change(Change::Step, refuse)), Status::StepTooLarge);
+        assert_eq!(cell.generation(), before);
+        assert_eq!(status(cell.change(Change::Step, |_| Ok(()))), Status::Ok);
+        assert_eq!(cell.generation(), before + 1);
+    }
+}

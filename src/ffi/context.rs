@@ -6,7 +6,7 @@ use super::arguments::{
 use super::cells::ContextCell;
 use super::entry::{call_host, entry, quiet_entry};
 use super::status::lahar_status;
-use crate::context::{Context, LogLevel};
+use crate::context::{Context, LogLevel, LogSink};
 use crate::error::{Error, Result};
 use std::ffi::{CStr, c_char, c_void};
 use std::io::Write;
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn lahar_context_set_log(
 
 type Callback = unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void);
 
-fn sink(callback: Callback, user: User) -> Arc<dyn Fn(i32, &str) + Send + Sync> {
+fn sink(callback: Callback, user: User) -> LogSink {
     Arc::new(move |level, line| {
         let line = c_string(line);
         // SAFETY: the host's callback follows the contract of lahar_log_callback; the text lives during the call.

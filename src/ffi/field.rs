@@ -1,7 +1,9 @@
 //! Particle fields: position, velocity, stress and so on, and every state variable of the body's model, by name. The
 //! functions here copy, in the order of insertion (by particle id); views show the memory itself.
 
-use super::arguments::{Grows, copy_list, count, index, out, slice, slice_mut, strides, struct_out, text};
+use super::arguments::{
+    Grows, copy_list, count, index, out, slice, slice_mut, strides, struct_out, text,
+};
 use super::cells::{Change, WorldCell};
 use super::entry::entry;
 use super::status::lahar_status;

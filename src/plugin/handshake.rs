@@ -228,7 +228,10 @@ unsafe fn read_model(
         other => return Err(place.error(format!("expected kinematics 0, 1 or 2, got {other}"))),
     };
     place.ensure(desc.outputs & LAHAR_OUTPUT_WAVE_SPEED != 0, || {
-        format!("expected outputs with LAHAR_OUTPUT_WAVE_SPEED, which is mandatory, got {:#x}", desc.outputs)
+        format!(
+            "expected outputs with LAHAR_OUTPUT_WAVE_SPEED, which is mandatory, got {:#x}",
+            desc.outputs
+        )
     })?;
     place.ensure(desc.outputs & !KNOWN_OUTPUTS == 0, || {
         format!("expected outputs among {KNOWN_OUTPUTS:#x}, got {:#x}", desc.outputs)
@@ -388,8 +391,8 @@ fn check_bounds(p: &Parameter, place: &Place<'_>) -> Result<()> {
         return Ok(());
     }
     let whole = p.kind == ParameterKind::Real || p.default.fract() == 0.0;
-    let labelled = p.kind != ParameterKind::Choice
-        || (p.default >= 0.0 && p.default < p.choices.len() as f64);
+    let labelled =
+        p.kind != ParameterKind::Choice || (p.default >= 0.0 && p.default < p.choices.len() as f64);
     let inside = p.default.is_finite() && p.default >= p.hard_min && p.default <= p.hard_max;
     place.ensure(inside && whole && labelled, || {
         format!(
@@ -412,9 +415,8 @@ unsafe fn read_state(
     let key = unsafe { numbered.identifier("key", desc.key, "") }?;
     let place = &place.inside(format!("{}, state variable `{}`", place.at, key.text));
     // SAFETY: told by the caller.
-    let (unit, description) = unsafe {
-        (place.text("unit", desc.unit)?, place.text("description", desc.description)?)
-    };
+    let (unit, description) =
+        unsafe { (place.text("unit", desc.unit)?, place.text("description", desc.description)?) };
     let kind = match desc.kind {
         LAHAR_STATE_SCALAR => StateKind::Scalar,
         LAHAR_STATE_VECTOR => StateKind::Vector,

@@ -22,11 +22,8 @@ const PROBED_MAJORS: std::ops::RangeInclusive<u32> = 0..=9;
 
 /// The plugin of a path (a text with a `/`) or of a bare name; see `Context::load_plugin`.
 pub(crate) fn load(name_or_path: &str) -> Result<&'static Plugin> {
-    let found = if name_or_path.contains('/') {
-        PathBuf::from(name_or_path)
-    } else {
-        find(name_or_path)?
-    };
+    let found =
+        if name_or_path.contains('/') { PathBuf::from(name_or_path) } else { find(name_or_path)? };
     let path = canonical_file(&found)?;
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(plugin) = loaded.iter().find(|p| p.path == path) {
@@ -70,7 +67,8 @@ fn find(name: &str) -> Result<PathBuf> {
 fn canonical_file(path: &Path) -> Result<PathBuf> {
     let shown = path.display();
     let not_found = |e: std::io::Error| {
-        let text = format!("plugin {shown}: the file cannot be found or read ({e}); check the path");
+        let text =
+            format!("plugin {shown}: the file cannot be found or read ({e}); check the path");
         Error::new(Status::PluginNotFound, text)
     };
     let invalid = |text: &str| Error::new(Status::PluginInvalid, format!("plugin {shown}: {text}"));
@@ -83,13 +81,39 @@ fn canonical_file(path: &Path) -> Result<PathBuf> {
         return Err(invalid("this is not a regular file; give the path of a shared library"));
     }
     let mut start = Vec::new();
-    File::open(&path).and_then(|f| f.take(4).read_to_end(&mut start)).map_err(not_found)?;
-    if cfg!(target_os = "linux") && start != b"\x7fELF" {
+    File::open(&path).and_then(|f| f.take(4096).read_to_end(&mut start)).map_err(not_found)?;
+    if cfg!(target_os = "linux") && !start.starts_with(b"\x7fELF") {
         return Err(invalid(
             "this is not a shared library (it does not start as an ELF file does); give the path of a .so file",
         ));
     }
+    if needed_length(&start).is_some_and(|needed| needed > kind.len()) {
+        return Err(invalid("this shared library is cut off; copy or build it again"));
+    }
     Ok(path)
+}
+
+/// Length that a 64-bit little-endian ELF file must have to hold its loaded segments and its table of sections, which
+/// linkers write last. The system's loader maps a shorter file and then dies of a bus error, and the host with it.
+fn needed_length(start: &[u8]) -> Option<u64> {
+    const LOAD: u32 = 1;
+    let u16_at = |at: usize| Some(u16::from_le_bytes(start.get(at..at + 2)?.try_into().ok()?));
+    let u32_at = |at: usize| Some(u32::from_le_bytes(start.get(at..at + 4)?.try_into().ok()?));
+    let u64_at = |at: usize| Some(u64::from_le_bytes(start.get(at..at + 8)?.try_into().ok()?));
+    if start.get(4..6)? != [2, 1] {
+        return None; // another class or byte order: the loader says so itself
+    }
+    let (table, size, count) = (u64_at(32)?, u16_at(54)?, u16_at(56)?);
+    let table = usize::try_from(table).ok().filter(|t| *t < start.len())?;
+    let sections = u64::from(u16_at(58)?) * u64::from(u16_at(60)?);
+    let mut needed = u64_at(40)?.saturating_add(sections).max(64);
+    for i in 0..usize::from(count) {
+        let header = table + i * usize::from(size);
+        if u32_at(header)? == LOAD {
+            needed = needed.max(u64_at(header + 8)?.saturating_add(u64_at(header + 32)?));
+        }
+    }
+    Some(needed)
 }
 
 fn open(path: &Path) -> Result<Plugin> {

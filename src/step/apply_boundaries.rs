@@ -43,11 +43,9 @@ pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
 
 /// Turns the momentum of the second scatter (R1) into velocity and applies the walls to it.
 pub fn apply_boundaries_again<const D: usize>(world: &mut State<D>) {
-    let floor = world.mass_floor;
     for_each_block(world, |space, key, walls, r0, r1, _| {
         for (r0, r1) in r0.iter().zip(r1.iter_mut()) {
-            let inverse = if r0[0] > floor { 1.0 / r0[0] } else { 0.0 };
-            *r1 = r1.map(|momentum| momentum * inverse);
+            *r1 = if r0[0] > 0.0 { r1.map(|momentum| momentum / r0[0]) } else { [0.0; 4] };
         }
         for entry in walls {
             for_reached_nodes(&entry.wall, space, key, |n| {

@@ -261,7 +261,6 @@ impl World {
                         ..error
                     })?;
                 }
-                s.find_mass_floor();
             });
             self.host_wrote = false;
         }

@@ -167,7 +167,7 @@ impl<const D: usize> State<D> {
         if let Some(error) = failed {
             return Err(error);
         }
-        if mass <= self.mass_floor {
+        if mass == 0.0 {
             return Ok(false);
         }
         for (out, sum) in out.iter_mut().zip(sum) {

@@ -93,8 +93,6 @@ pub struct State<const D: usize> {
     pub regroup: bool,
     /// Whether steps use the threads of the context.
     pub parallel: bool,
-    /// Nodes with no more mass than this are empty [kg].
-    pub mass_floor: f64,
     /// Limits of the next time step; None if the host changed something since they were found.
     pub limits: Option<Limits>,
     /// Time [s].
@@ -121,7 +119,6 @@ impl<const D: usize> State<D> {
             static_blocks: Vec::new(),
             regroup: true,
             parallel: false,
-            mass_floor: 0.0,
             limits: None,
             time: 0.0,
             step_count: 0,
@@ -191,15 +188,6 @@ impl<const D: usize> State<D> {
         self.regroup = true;
         self.limits = None;
         self.parallel = self.context.threads() > 1 && self.particle_count() >= SERIAL_BELOW;
-        self.find_mass_floor();
-    }
-
-    /// Nodes lighter than 1e-14 of the heaviest particle count as empty.
-    pub fn find_mass_floor(&mut self) {
-        let heaviest = |b: &Body| {
-            b.particles.column(b.particles.layout.mass).iter().fold(0.0, |m, v| f64::max(m, *v))
-        };
-        self.mass_floor = 1e-14 * self.bodies.iter().map(heaviest).fold(0.0, f64::max);
     }
 
     /// Sets the hook of a point.

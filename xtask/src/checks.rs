@@ -25,7 +25,7 @@ pub fn ci() -> Result<(), String> {
         "-D",
         "warnings",
     ])?;
-    self::headers(true)?;
+    headers(true)?;
     test()
 }
 

@@ -31,7 +31,7 @@ pub fn cargo(arguments: &[&str]) -> Result<(), String> {
 /// Runs a prepared command with its output shown.
 pub fn run_command(command: &mut Command) -> Result<(), String> {
     let line = shown(command);
-    println!("$ {line}");
+    eprintln!("$ {line}"); // standard output belongs to results
     let status = command.status().map_err(|e| format!("cannot start `{line}`: {e}"))?;
     if status.success() { Ok(()) } else { Err(format!("`{line}` ended with {status}")) }
 }

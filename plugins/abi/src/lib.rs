@@ -242,18 +242,32 @@ pub struct lahar_model_desc {
     /// Sum of `LAHAR_CAPABILITY_*`.
     pub capabilities: u64,
     /// Makes an instance from one value per parameter. Mandatory. [one thread at a time]
-    pub create: Option<unsafe extern "C" fn(values: *const f64, count: i64, instance: *mut *mut c_void) -> i32>,
+    pub create: Option<
+        unsafe extern "C" fn(values: *const f64, count: i64, instance: *mut *mut c_void) -> i32,
+    >,
     /// Frees an instance. Mandatory. [one thread at a time]
     pub destroy: Option<unsafe extern "C" fn(instance: *mut c_void)>,
     /// Says whether the values go together; if not, writes a NUL-terminated sentence. May be NULL. [one thread at a time]
-    pub check:
-        Option<unsafe extern "C" fn(values: *const f64, count: i64, message: *mut c_char, capacity: i64) -> i32>,
+    pub check: Option<
+        unsafe extern "C" fn(
+            values: *const f64,
+            count: i64,
+            message: *mut c_char,
+            capacity: i64,
+        ) -> i32,
+    >,
     /// Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
-    pub init_state: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    pub init_state: Option<
+        unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
+    >,
     /// One step of all points of the batch. Mandatory. [several threads]
-    pub update: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    pub update: Option<
+        unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
+    >,
     /// Wave speed (and diffusivity, if declared) from `stress0`, `state0` and `inputs`. Mandatory. [several threads]
-    pub wave_speed: Option<unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32>,
+    pub wave_speed: Option<
+        unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
+    >,
     /// A table for the extension `id`, or NULL. May be NULL. [any thread]
     pub get_extension: Option<unsafe extern "C" fn(id: *const c_char) -> *const c_void>,
 }
@@ -285,8 +299,9 @@ pub struct lahar_plugin_desc {
 }
 
 /// Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
-/// [one thread at a time, once in a process]
-pub type lahar_plugin_entry = Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
+/// [one thread at a time; once in a process, again only after it has refused]
+pub type lahar_plugin_entry =
+    Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
 
 // SAFETY: the tables hold pointers to immutable data of static lifetime and function pointers; the contract above says
 // from which threads the functions are called.

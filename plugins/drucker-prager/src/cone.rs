@@ -41,9 +41,7 @@ impl Cone {
         let (factor, dilation) = match kind {
             ConeKind::Compression => (6.0 / (3.0 - sin_phi), 6.0 * sin_psi / (3.0 - sin_psi)),
             ConeKind::Extension => (6.0 / (3.0 + sin_phi), 6.0 * sin_psi / (3.0 + sin_psi)),
-            ConeKind::PlaneStrain => {
-                (3.0 * root / (3.0 + sin_phi * sin_psi), 3.0 * sin_psi / root)
-            }
+            ConeKind::PlaneStrain => (3.0 * root / (3.0 + sin_phi * sin_psi), 3.0 * sin_psi / root),
         };
         Self { slope: factor * sin_phi, strength: factor * cohesion * cos_phi, dilation }
     }

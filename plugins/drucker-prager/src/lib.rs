@@ -8,10 +8,10 @@
 mod cone;
 
 use cone::{Cone, ConeKind};
-use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
+use lahar_plugin::tensor::{contract, deviator, trace};
 use lahar_plugin::{
-    Batch, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus, State,
-    c_text,
+    Batch, Columns, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
+    State, c_text,
 };
 use std::ffi::CStr;
 
@@ -130,21 +130,40 @@ impl Model for DruckerPrager {
     }
 
     fn update(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            let strain = batch.strain_increment(k);
-            let stress0 = batch.stress0(k);
-            let [equivalent_plastic_strain, opened_volumetric_strain] = batch.state0(k);
-            let history = History { equivalent_plastic_strain, opened_volumetric_strain };
-            let (stress, history) = self.step(stress0, history, strain);
-            let state = [history.equivalent_plastic_strain, history.opened_volumetric_strain];
+        let n = batch.n();
+        let Columns {
+            strain_increment,
+            stress0,
+            state0,
+            mut stress1,
+            state1,
+            inputs,
+            wave_speed,
+            status,
+            ..
+        } = batch.columns::<2>();
+        let density = inputs[0];
+        for k in 0..n {
+            let strain = strain_increment.map(|e| e[k]);
+            let start = stress0.map(|s| s[k]);
+            let history = History {
+                equivalent_plastic_strain: state0[0][k],
+                opened_volumetric_strain: state0[1][k],
+            };
+            let (stress, history) = self.step(start, history, strain);
             let c = self.wave_speed_of(density[k]);
-            batch.set_stress1(k, stress);
-            batch.set_state1(k, state);
-            batch.set_wave_speed(k, c);
-            let finite = c.is_finite() && state.iter().all(|s| s.is_finite());
-            if !(finite && is_finite(stress) && is_finite(stress0) && is_finite(strain)) {
-                batch.set_status(k, PointStatus::Failed);
+            for (column, value) in stress1.iter_mut().zip(stress) {
+                column[k] = value;
+            }
+            state1[0][k] = history.equivalent_plastic_strain;
+            state1[1][k] = history.opened_volumetric_strain;
+            wave_speed[k] = c;
+            // Sums of absolute values: finite if and only if every term is (short of overflow, which fails as well).
+            let magnitude =
+                [stress, start, strain].iter().flatten().fold(c, |sum, x| sum + x.abs());
+            let history = history.equivalent_plastic_strain + history.opened_volumetric_strain;
+            if !(magnitude + history).is_finite() {
+                status[k] = PointStatus::Failed as i32;
             }
         }
     }
@@ -164,7 +183,12 @@ impl DruckerPrager {
     }
 
     /// One point, one step.
-    fn step(&self, stress0: [f64; 6], mut history: History, strain: [f64; 6]) -> ([f64; 6], History) {
+    fn step(
+        &self,
+        stress0: [f64; 6],
+        mut history: History,
+        strain: [f64; 6],
+    ) -> ([f64; 6], History) {
         if history.opened_volumetric_strain == 0.0 {
             return self.load(stress0, history, strain);
         }
@@ -183,7 +207,12 @@ impl DruckerPrager {
     }
 
     /// A closed point: elastic trial, return to the cone, tension cut-off.
-    fn load(&self, stress0: [f64; 6], mut history: History, strain: [f64; 6]) -> ([f64; 6], History) {
+    fn load(
+        &self,
+        stress0: [f64; 6],
+        mut history: History,
+        strain: [f64; 6],
+    ) -> ([f64; 6], History) {
         let (bulk, shear) = (self.bulk_modulus, self.shear_modulus);
         let strain_deviator = deviator(strain);
         let stress0_deviator = deviator(stress0);

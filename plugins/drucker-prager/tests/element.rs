@@ -80,10 +80,7 @@ fn strength(cone: f64, axial: f64) -> f64 {
 #[test]
 fn triaxial_strengths_are_those_of_each_cone() {
     // φ = 30 deg, c = 10 kPa, σ3 = 100 kPa; q = (M σ3 + k) / (1 - M/3) in compression, / (1 + M/3) in extension.
-    let values = [
-        (COMPRESSION, 234.641016, 100.560435),
-        (EXTENSION, 140.784610, 78.213672),
-    ];
+    let values = [(COMPRESSION, 234.641016, 100.560435), (EXTENSION, 140.784610, 78.213672)];
     for (cone, in_compression, in_extension) in values {
         assert!((strength(cone, -5e-4) / (1e3 * in_compression) - 1.0).abs() < 1e-6);
         assert!((-strength(cone, 5e-4) / (1e3 * in_extension) - 1.0).abs() < 1e-6);
@@ -194,14 +191,11 @@ fn beyond_the_apex_a_point_opens_and_carries_nothing() {
 #[test]
 fn no_sequence_of_strains_leaves_the_cone_or_the_cut_off() {
     let cutoff = 4.0e3;
-    for (cone, m, k) in [
-        (COMPRESSION, 1.2, 20.784609690826528e3),
-        (EXTENSION, 6.0 / 7.0, 14.846149779161806e3),
-    ] {
-        let mut d = driver(
-            &[("cone", cone), ("dilation_angle", 12.0), ("tension_cutoff", cutoff)],
-            64,
-        );
+    for (cone, m, k) in
+        [(COMPRESSION, 1.2, 20.784609690826528e3), (EXTENSION, 6.0 / 7.0, 14.846149779161806e3)]
+    {
+        let mut d =
+            driver(&[("cone", cone), ("dilation_angle", 12.0), ("tension_cutoff", cutoff)], 64);
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -316,5 +310,7 @@ fn wave_speed_is_elastic() {
     let mut d = driver(&[], 1);
     d.wave_speed().unwrap();
     let shear = E / (2.0 * (1.0 + NU));
-    assert!((d.wave_speed_of(0) / ((BULK + 4.0 / 3.0 * shear) / 1000.0).sqrt() - 1.0).abs() < 1e-14);
+    assert!(
+        (d.wave_speed_of(0) / ((BULK + 4.0 / 3.0 * shear) / 1000.0).sqrt() - 1.0).abs() < 1e-14
+    );
 }

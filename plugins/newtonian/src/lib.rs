@@ -39,13 +39,15 @@ pub struct Newtonian {
 }
 
 impl Newtonian {
-    /// Pressure at the volume ratio `j`, tension included [Pa].
-    fn pressure(&self, j: f64) -> f64 {
+    /// Pressure at the volume ratio `j`, tension included, and the tangent -J dp/dJ [Pa].
+    fn pressure_and_tangent(&self, j: f64) -> (f64, f64) {
+        let k = self.bulk_modulus;
         match self.equation_of_state {
             EquationOfState::Tait { exponent } => {
-                self.bulk_modulus / exponent * (-exponent * j.ln()).exp_m1()
+                let power_minus_one = (-exponent * j.ln()).exp_m1();
+                (k / exponent * power_minus_one, k * (power_minus_one + 1.0))
             }
-            EquationOfState::Linear => self.bulk_modulus * (1.0 - j) / j,
+            EquationOfState::Linear => (k * (1.0 - j) / j, k / j),
         }
     }
 
@@ -57,15 +59,6 @@ impl Newtonian {
             }
             EquationOfState::Linear => 1.0 / (1.0 + p / self.bulk_modulus),
         }
-    }
-
-    /// sqrt(-J dp/dJ / ρ) [m/s]; under zero tension an opened point keeps the speed of its volume ratio.
-    fn sound_speed(&self, j: f64, density: f64) -> f64 {
-        let tangent = match self.equation_of_state {
-            EquationOfState::Tait { exponent } => self.bulk_modulus * j.powf(-exponent),
-            EquationOfState::Linear => self.bulk_modulus / j,
-        };
-        (tangent / density).sqrt()
     }
 
     /// Kinematic diffusivity of longitudinal motion, 4/3 μ/ρ [m^2/s].
@@ -103,12 +96,9 @@ impl Model for Newtonian {
             c"Whether a negative pressure becomes zero",
         ),
     ];
-    const STATES: &'static [State] = &[State::scalar(
-        c"volume_ratio",
-        c"-",
-        c"Volume over the volume at zero pressure",
-    )
-    .initial(1.0)];
+    const STATES: &'static [State] =
+        &[State::scalar(c"volume_ratio", c"-", c"Volume over the volume at zero pressure")
+            .initial(1.0)];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
 
@@ -148,13 +138,14 @@ impl Model for Newtonian {
             let strain = batch.strain_increment(k);
             let [j0] = batch.state0(k);
             let j = j0 * trace(strain).exp();
-            let p = self.pressure(j);
+            let (p, tangent) = self.pressure_and_tangent(j);
+            // An opened point keeps the wave speed of its volume ratio.
             let p = if self.zero_tension && p < 0.0 { 0.0 } else { p };
             let mut stress = deviator(strain).map(|e| two_mu_per_dt * e);
             for s in &mut stress[..3] {
                 *s -= p;
             }
-            let c = self.sound_speed(j, density[k]);
+            let c = (tangent / density[k]).sqrt();
             batch.set_stress1(k, stress);
             batch.set_state1(k, [j]);
             batch.set_wave_speed(k, c);
@@ -169,7 +160,8 @@ impl Model for Newtonian {
         let density = batch.input(0);
         for k in 0..batch.n() {
             let [j] = batch.state0(k);
-            batch.set_wave_speed(k, self.sound_speed(j, density[k]));
+            let (_, tangent) = self.pressure_and_tangent(j);
+            batch.set_wave_speed(k, (tangent / density[k]).sqrt());
             batch.set_diffusivity(k, self.diffusivity(density[k]));
         }
     }

@@ -101,7 +101,8 @@ fn sound_speed_is_the_slope_of_pressure_over_density() {
     d.set_input(0, 0, 1000.0 / 0.95);
     d.wave_speed().unwrap();
     let p = |j: f64| K / 7.0 * (j.powi(-7) - 1.0);
-    let slope = (p(0.95 - 1e-6) - p(0.95 + 1e-6)) / (1000.0 / (0.95 - 1e-6) - 1000.0 / (0.95 + 1e-6));
+    let slope =
+        (p(0.95 - 1e-6) - p(0.95 + 1e-6)) / (1000.0 / (0.95 - 1e-6) - 1000.0 / (0.95 + 1e-6));
     assert!((d.wave_speed_of(0) / slope.sqrt() - 1.0).abs() < 1e-7);
 }
 

@@ -250,7 +250,7 @@ impl<'a> Batch<'a> {
         for (i, input) in inputs.iter_mut().enumerate().take(M::INPUTS.len()) {
             // SAFETY: the ABI gives one pointer per wanted input, each NULL or with n values.
             *input = unsafe { read(*raw.inputs.add(i), n) };
-            require(*input, n, "a wanted input")?;
+            require(input, n, "a wanted input")?;
         }
         // SAFETY: the ABI fixes the number of components of each array; NULL becomes an empty slice; the arrays do
         // not alias, and the end state and the outputs are ours alone for the call.

@@ -210,12 +210,9 @@ impl Driver {
         dt: f64,
     ) -> Result<(), String> {
         self.status.fill(0);
-        for out in [
-            &mut self.wave_speed,
-            &mut self.diffusivity,
-            &mut self.energy,
-            &mut self.dt_factor,
-        ] {
+        for out in
+            [&mut self.wave_speed, &mut self.diffusivity, &mut self.energy, &mut self.dt_factor]
+        {
             out.get_mut().fill(f64::NAN);
         }
         let inputs: Vec<*const f64> = self.inputs.iter().map(|i| i.get().as_ptr()).collect();

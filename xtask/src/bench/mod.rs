@@ -46,9 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         }
         return Ok(());
     }
-    if !arguments.json {
-        process::cargo(&["build", "--release", "--workspace"])?;
-    }
+    process::cargo(&["build", "--release", "--workspace"])?;
     let mut rows = Vec::new();
     for scene in chosen {
         eprintln!("{} ...", scene.name);

@@ -4,13 +4,17 @@
 //! everywhere, and moves particles from cell to cell, so that sorting is part of the measured step. Sand starts at a
 //! pressure that the walls keep up, and is in plastic flow after the first few steps.
 
+use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
 use lahar::error::Result;
 use lahar::material::Material;
-use lahar::world::{
-    Fill, Options, Region, ShapeKind, StepOrder, Strided, StridedMut, TransferKind, Wall, WallKind,
-    World,
-};
+use lahar::particles::seeding::{Fill, Region};
+use lahar::shape::ShapeKind;
+use lahar::step::StepOrder;
+use lahar::transfer::TransferKind;
+use lahar::world::World;
+use lahar::world::host_arrays::{Strided, StridedMut, Strides};
+use lahar::world::options::Options;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -52,7 +56,7 @@ const APIC_ELASTIC: Scene = Scene {
 };
 
 /// All scenes, in the order of the tables.
-pub const SCENES: [Scene; 5] = [
+pub static SCENES: [Scene; 5] = [
     APIC_ELASTIC,
     Scene {
         name: "3d-quadratic-apic-drucker-prager",
@@ -133,12 +137,8 @@ impl Scene {
         let count = world.particle_count(body)?;
         let dimension = self.dimension;
         let mut position = vec![0.0; count * dimension];
-        let (one, row) = (1, dimension as i64);
-        world.read_field(
-            body,
-            "position",
-            &mut StridedMut::new(&mut position, count, dimension, one, row)?,
-        )?;
+        let strides = Strides::new(count, dimension, 0, 0)?; // point after point
+        world.read_field(body, "position", &mut StridedMut::new(&mut position, strides)?)?;
         let k = std::f64::consts::PI / EDGE;
         let mut velocity = vec![0.0; count * dimension];
         for (v, x) in velocity.chunks_mut(dimension).zip(position.chunks(dimension)) {
@@ -146,6 +146,6 @@ impl Scene {
             v[0] = self.speed * sin_x * cos_y;
             v[1] = -self.speed * cos_x * sin_y;
         }
-        world.write_field(body, "velocity", &Strided::new(&velocity, count, dimension, one, row)?)
+        world.write_field(body, "velocity", &Strided::new(&velocity, strides)?)
     }
 }

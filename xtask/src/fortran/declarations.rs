@@ -91,7 +91,8 @@ impl Header {
             return Ok(());
         }
         let Some(text) = text.strip_prefix("typedef ") else {
-            if let Some(tag) = text.strip_prefix("struct ").filter(|tag| !tag.contains(['{', '('])) {
+            if let Some(tag) = text.strip_prefix("struct ").filter(|tag| !tag.contains(['{', '(']))
+            {
                 self.opaque.push(tag.trim().to_string());
                 return Ok(());
             }

@@ -16,9 +16,8 @@ const END: &str = "  ! ---- end of the part that `cargo xtask headers` writes --
 /// Writes the generated section, or only compares it.
 pub fn run(check: bool) -> Result<(), String> {
     let root = process::root();
-    let read = |file: &str| {
-        std::fs::read_to_string(root.join(file)).map_err(|e| format!("{file}: {e}"))
-    };
+    let read =
+        |file: &str| std::fs::read_to_string(root.join(file)).map_err(|e| format!("{file}: {e}"));
     let header = Header::parse(&read(HEADER)?).map_err(|e| format!("{HEADER}: {e}"))?;
     let before = read(MODULE)?;
     let after = replaced(&before, &module::section(&header)?)?;

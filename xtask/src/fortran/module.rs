@@ -75,7 +75,8 @@ fn interface(header: &Header, function: &Function) -> Result<String, String> {
     let mut text = format!("    {head} {fortran}({list}) &\n");
     let _ = writeln!(text, "        bind(c, name=\"{name}\"){suffix}");
     let imports = imports(header, function)?;
-    let _ = writeln!(text, "      import :: {}", imports.into_iter().collect::<Vec<_>>().join(", "));
+    let _ =
+        writeln!(text, "      import :: {}", imports.into_iter().collect::<Vec<_>>().join(", "));
     text.push_str("      implicit none\n");
     for argument in &function.arguments {
         let _ = writeln!(text, "      {}", dummy(header, argument)?);
@@ -124,7 +125,8 @@ fn value_type(header: &Header, variable: &Variable) -> Result<String, String> {
 fn dummy(header: &Header, argument: &Variable) -> Result<String, String> {
     let name = &argument.name;
     let base = header.resolve(&argument.kind.base);
-    let by_pointer = argument.kind.depth + usize::from(argument.length.is_some() && argument.kind.depth == 0);
+    let by_pointer =
+        argument.kind.depth + usize::from(argument.length.is_some() && argument.kind.depth == 0);
     let intent = if argument.kind.constant { "intent(in)" } else { "intent(inout)" };
     let shape = argument.length.map_or_else(|| "*".to_string(), |n| n.to_string());
     let is_struct = header.structs.iter().any(|s| s.name == base);

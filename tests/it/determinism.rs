@@ -1,0 +1,57 @@
+//! The state after 200 steps is the same, bit for bit, for any number of threads.
+
+use lahar::boundary::{Wall, WallKind};
+use lahar::transfer::TransferKind;
+use lahar::world::options::Options;
+
+use crate::setup::{a_box, context, elastic, fill, read, world};
+
+/// All fields of two colliding bodies (more than 20 000 particles) after 200 steps, and the number of threads that worked.
+fn state_after_a_collision(threads: usize, transfer: TransferKind) -> (Vec<u64>, usize) {
+    let context = context(threads);
+    let soft = elastic(&context, 1e5, 0.3);
+    let stiff = elastic(&context, 4e5, 0.2);
+    let options = Options {
+        dimension: 3,
+        spacing: 0.1,
+        transfer,
+        gravity: [0.0, 0.0, -9.81],
+        ..Options::default()
+    };
+    let mut world = world(&context, &options);
+    let lower = a_box([0.0, 0.0, 0.05], [1.5, 1.4, 0.55]);
+    let upper = a_box([0.2, 0.3, 0.6], [1.3, 1.6, 1.5]);
+    fill(&mut world, &soft, &lower, 1000.0, [0.0; 3]);
+    fill(&mut world, &stiff, &upper, 2000.0, [0.5, 0.0, -2.0]);
+    let kind = WallKind::Friction;
+    world
+        .add_wall(&Wall { axis: 2, side: 1, position: 0.05, kind, friction: 0.4 })
+        .expect("a good wall");
+    assert!(world.totals(None).expect("totals").particles >= 20_000 - 2_000);
+    for _ in 0..200 {
+        world.step(None).expect("a good step");
+    }
+    let mut bits = Vec::new();
+    for body in world.bodies() {
+        for info in world.fields(body).expect("fields") {
+            let name = info.name.to_str().expect("ASCII");
+            bits.extend(read(&world, body, name).iter().map(|v| v.to_bits()));
+        }
+        bits.extend(world.ids(body).expect("ids").iter().map(|id| *id as u64));
+    }
+    let totals = world.totals(None).expect("totals");
+    bits.extend([totals.kinetic_energy, totals.momentum[2], world.time()].map(f64::to_bits));
+    (bits, context.threads_used())
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    for transfer in [TransferKind::PicFlip, TransferKind::Apic] {
+        let (one, _) = state_after_a_collision(1, transfer);
+        for threads in [2, 3, 8] {
+            let (bits, used) = state_after_a_collision(threads, transfer);
+            assert!(used >= 2, "of {threads} threads only {used} worked");
+            assert!(bits == one, "{threads} threads give other bits than one");
+        }
+    }
+}
