@@ -10,7 +10,7 @@ program hello
   use, intrinsic :: iso_c_binding, only: c_int32_t
   use lahar
   implicit none
-  real(lahar_real), parameter :: gravity = 9.81_lahar_real, dt = 5e-4_lahar_real ! [m/s^2], [s]
+  real(lahar_real), parameter :: gravity = 9.81_lahar_real, dt = 1e-3_lahar_real ! [m/s^2], [s]
   type(lahar_context) :: context
   type(lahar_material) :: rubber
   type(lahar_world) :: world

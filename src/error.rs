@@ -135,7 +135,11 @@ impl Error {
     }
 
     /// An unknown name: says what was looked for, the closest known name, and all known names if they are few.
-    pub fn unknown_name<'a>(what: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+    pub fn unknown_name<'a>(
+        what: &str,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
         let closest = known
             .iter()

@@ -68,7 +68,10 @@ impl Wall {
             )));
         }
         if !self.position.is_finite() {
-            return Err(Error::invalid(format!("a wall's position must be finite, got {}", self.position)));
+            return Err(Error::invalid(format!(
+                "a wall's position must be finite, got {}",
+                self.position
+            )));
         }
         if !(self.friction >= 0.0 && self.friction.is_finite()) {
             return Err(Error::invalid(format!(

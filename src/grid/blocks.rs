@@ -153,7 +153,8 @@ impl<const D: usize> Grid<D> {
         }
         new.sort_unstable_by(morton_order);
         new.dedup();
-        self.removed = old.iter().filter(|k| new.binary_search_by(|n| morton_order(n, k)).is_err()).count();
+        self.removed =
+            old.iter().filter(|k| new.binary_search_by(|n| morton_order(n, k)).is_err()).count();
         self.created = new.len() + self.removed - old.len();
         if self.created + self.removed > 0 {
             self.index.clear();

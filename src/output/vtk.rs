@@ -19,7 +19,10 @@ const LEVEL: u32 = 1;
 pub fn write(world: &World, path: &Path) -> Result<()> {
     let failed = |what: String| {
         let path = path.display();
-        Error::new(Status::File, format!("cannot write `{path}`: {what}; check folder, rights and space"))
+        Error::new(
+            Status::File,
+            format!("cannot write `{path}`: {what}; check folder, rights and space"),
+        )
     };
     if path.extension().and_then(|e| e.to_str()) != Some("vtp") {
         return Err(failed("the name must end in .vtp".into()));
@@ -48,7 +51,8 @@ fn vtk(world: &World) -> Result<Vtk> {
             let array = arrays.entry(name).or_insert((components, Vec::new()));
             array.1.resize(count * components, f64::NAN);
             for k in 0..n {
-                let value = |c| if c < slice.components { slice.data[c * slice.stride + k] } else { 0.0 };
+                let value =
+                    |c| if c < slice.components { slice.data[c * slice.stride + k] } else { 0.0 };
                 array.1.extend((0..components).map(value));
             }
         }

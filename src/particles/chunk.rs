@@ -91,10 +91,7 @@ pub fn for_each_chunk<R: Send>(
     let mid = (chunk.len / 2).next_multiple_of(CHUNK);
     let (left, right) = chunk.split(mid);
     let run = |part| for_each_chunk(part, parallel, work, fold);
-    let (a, b) = if parallel {
-        rayon::join(|| run(left), || run(right))
-    } else {
-        (run(left), run(right))
-    };
+    let (a, b) =
+        if parallel { rayon::join(|| run(left), || run(right)) } else { (run(left), run(right)) };
     fold(a, b)
 }

@@ -121,7 +121,9 @@ fn bounds<const D: usize>(region: &Region) -> Result<([f64; D], [f64; D])> {
         }
         Region::Sphere { center, radius } => {
             if !(*radius > 0.0 && radius.is_finite()) {
-                return Err(Error::invalid(format!("radius must be positive and finite, got {radius}")));
+                return Err(Error::invalid(format!(
+                    "radius must be positive and finite, got {radius}"
+                )));
             }
             let at = |sign: f64| std::array::from_fn(|d| center[d] + sign * radius);
             (at(-1.0), at(1.0))

@@ -1,6 +1,6 @@
 //! Linear shape function: w(r) = 1 − |r| on |r| < 1, r in units of the spacing.
 
-use super::stencil::{Axis, ShapeFunction};
+use super::stencil::{Axis, ShapeFunction, floor};
 
 /// Piecewise linear hat function.
 pub struct Linear;
@@ -11,7 +11,7 @@ impl ShapeFunction<2> for Linear {
 
     #[inline(always)]
     fn axis(xi: f64) -> Axis<2> {
-        let first = xi.floor();
+        let first = floor(xi);
         let f = xi - first;
         Axis { first, fraction: f, w: [1.0 - f, f], dw: [-1.0, 1.0] }
     }

@@ -2,7 +2,7 @@
 //!
 //! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360.
 
-use super::stencil::{Axis, ShapeFunction};
+use super::stencil::{Axis, ShapeFunction, floor};
 
 /// Quadratic B-spline.
 pub struct QuadraticBspline;
@@ -13,7 +13,7 @@ impl ShapeFunction<3> for QuadraticBspline {
 
     #[inline(always)]
     fn axis(xi: f64) -> Axis<3> {
-        let first = (xi - Self::FIRST_OFFSET).floor();
+        let first = floor(xi - Self::FIRST_OFFSET);
         let f = xi - first; // in [½, 3/2)
         let (a, b, c) = (1.5 - f, f - 1.0, f - 0.5);
         Axis {

@@ -13,6 +13,17 @@ pub struct Axis<const N: usize> {
     pub dw: [f64; N],
 }
 
+/// The largest whole number not above x, for |x| < 2^51; not finite if x is not.
+///
+/// Adding and subtracting 1.5 · 2^52 rounds to the nearest whole number. The baseline instruction set has no rounding
+/// instruction, and the library call costs more than the rest of a weight.
+#[inline(always)]
+pub fn floor(x: f64) -> f64 {
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    let nearest = (x + WHOLE) - WHOLE;
+    if nearest > x { nearest - 1.0 } else { nearest }
+}
+
 /// A shape function of one axis with `N` nodes.
 pub trait ShapeFunction<const N: usize> {
     /// The lowest node at ξ is floor(ξ − FIRST_OFFSET).
@@ -107,6 +118,15 @@ mod tests {
             }
         });
         worst.into_iter().fold(0.0, |m, d| f64::max(m, f64::abs(d)))
+    }
+
+    #[test]
+    fn the_floor_of_a_position_is_that_of_the_library() {
+        for x in [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 2.5, -2.5, 1e9 + 0.75, -1e9 - 0.25, -1e-300] {
+            assert_eq!(floor(x), x.floor(), "{x}");
+            assert_eq!(floor(f64::next_down(x)), f64::next_down(x).floor(), "below {x}");
+        }
+        assert!(!floor(f64::NAN).is_finite() && !floor(f64::INFINITY).is_finite());
     }
 
     #[test]

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Place, Result, Status};
 use crate::grid::key::{block_nodes, morton_order};
 use crate::grid::{EDGE, GridPolicy, Key, Run};
+use crate::shape::stencil::floor;
 use crate::world::state::{Body, Space, State};
 
 /// Largest distance from the origin, in cells, at which particles are accepted.
@@ -44,7 +45,7 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)>
     let mut key = [0; D];
     let mut cell = 0;
     for d in 0..D {
-        let first = (xi[d] - space.first_offset).floor();
+        let first = floor(xi[d] - space.first_offset);
         if !(first.abs() < FARTHEST) {
             return None;
         }
@@ -120,7 +121,9 @@ fn number_blocks<const D: usize>(world: &State<D>, sorting: &mut Sorting<D>) -> 
 fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D]) -> Error {
     let id = body.particles.id[k];
     let limit = match world.options.grid_policy {
-        GridPolicy::Static => "the box of the static grid (use a larger box or grid_policy dynamic)",
+        GridPolicy::Static => {
+            "the box of the static grid (use a larger box or grid_policy dynamic)"
+        }
         _ => "8e9 cells around the origin of the grid (check velocities and spacing)",
     };
     Error::new(

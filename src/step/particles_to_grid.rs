@@ -4,8 +4,8 @@
 
 use rayon::prelude::*;
 
-use crate::grid::key::block_nodes;
 use crate::grid::blocks::Neighbours;
+use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
 use crate::grid::{EDGE, Key, Lanes, NONE, Run};
 use crate::particles::Particles;
@@ -14,8 +14,7 @@ use crate::tensor::SYMMETRIC_INDEX;
 use crate::world::state::{Space, State};
 
 /// The scatter of one run of particles into a tile of the block with the given key.
-pub type Scatter<const D: usize> =
-    fn(&Particles, &Space<D>, Key<D>, Run, usize, &mut [TileNode]);
+pub type Scatter<const D: usize> = fn(&Particles, &Space<D>, Key<D>, Run, usize, &mut [TileNode]);
 
 /// Maps mass, momentum and the forces of the stresses to the grid.
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
@@ -66,7 +65,8 @@ fn pull<const D: usize>(
         nodes.fill([0.0; 4]);
         for corner in 0..1 << D {
             let source = neighbours[corner];
-            let (first, end) = if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
+            let (first, end) =
+                if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
             for t in first..end {
                 let tile = tiles.tile(t as usize, D);
                 shared_rows::<D>(tiles.edge, corner, |from, to, len| {
@@ -96,7 +96,15 @@ fn add_lanes(y: &mut Lanes, a: f64, x: &Lanes) {
 /// A vector in lanes 1, 2, 3.
 #[inline(always)]
 fn lanes<const D: usize>(first: f64, v: [f64; D]) -> Lanes {
-    std::array::from_fn(|l| if l == 0 { first } else if l <= D { v[l - 1] } else { 0.0 })
+    std::array::from_fn(|l| {
+        if l == 0 {
+            first
+        } else if l <= D {
+            v[l - 1]
+        } else {
+            0.0
+        }
+    })
 }
 
 /// Position of the lowest node of a stencil in the tile of block `key`.
@@ -143,9 +151,10 @@ pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
                 add_lanes(&mut lowest, -stencil.axes[d].fraction, &slope[d]);
             }
             let scale = -volume / space.spacing;
-            flux[d] = lanes(0.0, std::array::from_fn::<f64, D, _>(|a| {
-                scale * stress[SYMMETRIC_INDEX[a][d]]
-            }));
+            flux[d] = lanes(
+                0.0,
+                std::array::from_fn::<f64, D, _>(|a| scale * stress[SYMMETRIC_INDEX[a][d]]),
+            );
         }
         let z = *stencil.last();
         let nodes = &mut tile[corner(&stencil, key, edge)..];

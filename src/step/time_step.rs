@@ -75,7 +75,12 @@ fn limits_of_chunk<const D: usize>(
                 .copy_from_slice(&particles.column(layout.state + c)[first..first + n]);
         }
         for k in 0..n {
-            s.set_inputs(k, particles.column(layout.mass)[first + k] / particles.column(layout.volume)[first + k], spacing);
+            s.set_inputs(
+                k,
+                particles.column(layout.mass)[first + k]
+                    / particles.column(layout.volume)[first + k],
+                spacing,
+            );
         }
         let mut batch = StressBatch { dt: 0.0, time: 0.0, ..s.batch() };
         body.material.wave_speed(&mut batch)?;

@@ -19,10 +19,7 @@ pub struct Outcome {
 impl Outcome {
     /// Both together; of two failures the first counts.
     pub fn merge(self, other: Self) -> Self {
-        Self {
-            limits: self.limits.merge(other.limits),
-            failure: self.failure.or(other.failure),
-        }
+        Self { limits: self.limits.merge(other.limits), failure: self.failure.or(other.failure) }
     }
 
     /// The limits of the next step, or the failure.
@@ -44,12 +41,14 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     if !limits.speed.is_finite() {
         return Outcome { failure: Some(Box::new(not_finite(piece))), ..Outcome::default() };
     }
-    limits.diffusivity = piece.scratch.diffusivity.iter().take(piece.chunk.len).fold(0.0, |m, d| m.max(*d));
+    limits.diffusivity =
+        piece.scratch.diffusivity.iter().take(piece.chunk.len).fold(0.0, |m, d| m.max(*d));
     Outcome { limits, failure: None }
 }
 
 fn check_points<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<()> {
-    let failed = piece.scratch.status.iter().take(piece.chunk.len).position(|s| *s >= LAHAR_POINT_FAILED);
+    let failed =
+        piece.scratch.status.iter().take(piece.chunk.len).position(|s| *s >= LAHAR_POINT_FAILED);
     match failed {
         Some(k) => Err(fault(piece, k, Status::MaterialFailed, "could not update")),
         None => Ok(()),
@@ -82,7 +81,9 @@ fn commit<const D: usize>(piece: &mut Piece<'_, '_, D>) {
                 let i = c * stride + k;
                 work += twice * (s.stress0[i] + s.stress1[i]) * s.strain_increment[i];
             }
-            let trace = s.strain_increment[k] + s.strain_increment[stride + k] + s.strain_increment[2 * stride + k];
+            let trace = s.strain_increment[k]
+                + s.strain_increment[stride + k]
+                + s.strain_increment[2 * stride + k];
             chunk.column(layout.strain_energy)[k] + work * volume * (1.0 - 0.5 * trace)
         } else {
             s.energy[k] * volume

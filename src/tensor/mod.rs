@@ -15,32 +15,40 @@ pub const SYMMETRIC: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 
 pub const SYMMETRIC_INDEX: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// The symmetric tensor with the given six components.
+#[inline]
 pub fn symmetric(s: [f64; 6]) -> Mat3 {
     Mat3::from_fn(|a, b| s[SYMMETRIC_INDEX[a][b]])
 }
 
 /// The six components of the symmetric part of `m`.
+#[inline]
 pub fn symmetric_part(m: &Mat3) -> [f64; 6] {
     SYMMETRIC.map(|(a, b)| 0.5 * (m[(a, b)] + m[(b, a)]))
 }
 
-/// Rotation of a step: R = exp(W dt) with the spin W = skw L, by Rodrigues' formula.
+/// Rotation of a step: R = exp(W dt) with the spin W = skw L, by Rodrigues' formula
+/// R = I + a W dt + b (W dt)², a = sin(θ)/θ, b = (1 − cos θ)/θ².
 ///
-/// `l` is the velocity gradient [1/s], `dt` the step [s]. The angle of a step is small, so the two coefficients
-/// sin(θ)/θ and (1 − cos θ)/θ² are evaluated through sinc forms that are exact at θ = 0.
+/// `l` is the velocity gradient [1/s], `dt` the step [s]. Angles of a step are small: up to 0.03 rad both coefficients are
+/// taken from their series, whose next term is below the round-off.
+#[inline]
 pub fn step_rotation(l: &Mat3, dt: f64) -> Mat3 {
     let w = (l - l.transpose()) * (0.5 * dt);
-    let theta2 = w[(0, 1)].powi(2) + w[(1, 2)].powi(2) + w[(0, 2)].powi(2);
-    if theta2 == 0.0 {
-        return Mat3::identity();
-    }
-    let theta = theta2.sqrt();
-    let half = 0.5 * theta;
-    let sinc_half = half.sin() / half;
-    Mat3::identity() + w * (theta.sin() / theta) + w * w * (0.5 * sinc_half * sinc_half)
+    let t = w[(0, 1)] * w[(0, 1)] + w[(1, 2)] * w[(1, 2)] + w[(0, 2)] * w[(0, 2)];
+    let (a, b) = if t < 1e-3 {
+        (
+            1.0 - t / 6.0 * (1.0 - t / 20.0 * (1.0 - t / 42.0)),
+            0.5 - t / 24.0 * (1.0 - t / 30.0 * (1.0 - t / 56.0)),
+        )
+    } else {
+        let (theta, half) = (t.sqrt(), 0.5 * t.sqrt());
+        (theta.sin() / theta, 0.5 * (half.sin() / half).powi(2))
+    };
+    Mat3::identity() + w * a + w * w * b
 }
 
 /// R s Rᵀ of a symmetric tensor given by its six components.
+#[inline]
 pub fn rotate(r: &Mat3, s: [f64; 6]) -> [f64; 6] {
     let m = r * symmetric(s) * r.transpose();
     SYMMETRIC.map(|(a, b)| m[(a, b)])
@@ -52,7 +60,7 @@ mod tests {
 
     #[test]
     fn rotation_of_a_step_is_the_rotation_by_its_angle() {
-        for angle in [1e-9, 1e-3, 0.7] {
+        for angle in [0.0, 1e-9, 1e-3, 0.031, 0.032, 0.7] {
             let l = Mat3::new(0.0, -angle, 0.0, angle, 0.0, 0.0, 0.0, 0.0, 0.0);
             let r = step_rotation(&l, 1.0);
             let (s, c) = f64::sin_cos(angle);

@@ -217,5 +217,7 @@ fn field_of_column(layout: &Layout, dimension: usize, column: usize) -> String {
         .fields(dimension)
         .iter()
         .find(|(info, first)| inside(*first, info.components))
-        .map_or("a state variable".to_string(), |(info, _)| info.name.to_string_lossy().into_owned())
+        .map_or("a state variable".to_string(), |(info, _)| {
+            info.name.to_string_lossy().into_owned()
+        })
 }

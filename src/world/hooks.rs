@@ -56,10 +56,10 @@ impl<const D: usize> Nodes for Grid<D> {
     }
 
     fn set_velocity(&mut self, node: usize, velocity: [f64; 3]) {
+        let before = self.velocity[node];
+        self.velocity[node][1..=D].copy_from_slice(&velocity[..D]);
         for a in 0..D {
-            let change = velocity[a] - self.velocity[node][a + 1];
-            self.velocity[node][a + 1] = velocity[a];
-            self.increment[node][a + 1] += change;
+            self.increment[node][a + 1] += velocity[a] - before[a + 1];
         }
     }
 }

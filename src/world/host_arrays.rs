@@ -21,13 +21,14 @@ impl Strides {
         let interleaved = component == 0 && point == 0;
         let (component, point) =
             if interleaved { (1, components as i64) } else { (component, point) };
-        let overlap = "component_stride and point_stride must be positive (or both 0: point after point)";
+        let overlap =
+            "component_stride and point_stride must be positive (or both 0: point after point)";
         if component < 1 || point < 1 {
             return Err(Error::invalid(format!("{overlap}, got {component} and {point}")));
         }
-        let last = (count.max(1) as i64 - 1).checked_mul(point).and_then(|p| {
-            p.checked_add((components.max(1) as i64 - 1).checked_mul(component)?)
-        });
+        let last = (count.max(1) as i64 - 1)
+            .checked_mul(point)
+            .and_then(|p| p.checked_add((components.max(1) as i64 - 1).checked_mul(component)?));
         if last.is_none_or(|last| last > isize::MAX as i64 / 8 - 1) {
             return Err(Error::invalid(format!(
                 "{count} points with strides {component} and {point} do not fit the address space"

@@ -264,11 +264,10 @@ impl World {
             });
             self.host_wrote = false;
         }
-        let stable = self.stable_dt()?;
         on!(&mut self, s => if s.limits.is_none() {
             s.limits = Some(limits_of_state(s)?);
         });
-        Ok(stable)
+        self.stable_dt()
     }
 
     fn commit(&mut self, dt: f64) -> Result<()> {

@@ -65,7 +65,10 @@ impl Options {
     /// Whether a world can be made of these options.
     pub fn check(&self) -> Result<()> {
         if self.dimension != 2 && self.dimension != 3 {
-            return Err(Error::invalid(format!("dimension must be 2 or 3, got {}", self.dimension)));
+            return Err(Error::invalid(format!(
+                "dimension must be 2 or 3, got {}",
+                self.dimension
+            )));
         }
         if !(self.spacing > 0.0 && self.spacing.is_finite()) {
             return Err(Error::invalid(format!(
@@ -74,7 +77,10 @@ impl Options {
             )));
         }
         if !self.origin.iter().all(|x| x.is_finite()) {
-            return Err(Error::invalid(format!("origin must be finite [m], got {:?}", self.origin)));
+            return Err(Error::invalid(format!(
+                "origin must be finite [m], got {:?}",
+                self.origin
+            )));
         }
         if !(self.pic_rate >= 0.0) {
             return Err(Error::invalid(format!(

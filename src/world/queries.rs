@@ -119,7 +119,9 @@ impl<const D: usize> State<D> {
         let components = node_field_components::<D>(field)?;
         if out.len() != components {
             let n = out.len();
-            return Err(Error::invalid(format!("{field} has {components} components, room is for {n}")));
+            return Err(Error::invalid(format!(
+                "{field} has {components} components, room is for {n}"
+            )));
         }
         let (r0, force) = (self.grid.velocity[node], self.grid.force[node]);
         match field {

@@ -2,9 +2,7 @@
 
 use std::cell::RefCell;
 
-use lahar_plugin_abi::{
-    LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY,
-};
+use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY};
 
 use crate::grid::TileNode;
 use crate::material::{Input, Kinematics, Material, StressBatch};

@@ -38,8 +38,16 @@ fn vibrate(bar: Bar) -> Vibration {
     let material = elastic(&context, 100.0, 0.0);
     let h = 25.0 / bar.cells as f64;
     let Bar { shape, transfer, order, pic_rate, .. } = bar;
-    let options =
-        Options { dimension: 2, spacing: h, shape, transfer, order, pic_rate, cfl: 0.1, ..Options::default() };
+    let options = Options {
+        dimension: 2,
+        spacing: h,
+        shape,
+        transfer,
+        order,
+        pic_rate,
+        cfl: 0.1,
+        ..Options::default()
+    };
     // the walls stand on node planes for linear and on half-cell planes for quadratic shapes
     let shift = if shape == ShapeKind::Linear { 0.0 } else { 0.5 * h };
     let options = Options { origin: [shift, shift, 0.0], ..options };
@@ -106,10 +114,7 @@ fn a_quadratic_bar_with_walls_on_half_cell_planes_has_the_period_within_1_5_perc
 fn pic_loses_the_energy_of_the_bar_and_apic_some() {
     let pic = vibrate(Bar { pic_rate: f64::INFINITY, ..FLIP });
     assert!(pic.drift < -0.95, "PIC must lose more than 95 %: {:+e}", pic.drift);
-    let apic = vibrate(Bar {
-        transfer: TransferKind::Apic,
-        shape: ShapeKind::QuadraticBspline,
-        ..FLIP
-    });
+    let apic =
+        vibrate(Bar { transfer: TransferKind::Apic, shape: ShapeKind::QuadraticBspline, ..FLIP });
     println!("drift of PIC {:+e}, of quadratic APIC {:+e}", pic.drift, apic.drift);
 }

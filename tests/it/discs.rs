@@ -23,8 +23,15 @@ fn collide(transfer: TransferKind, pic_rate: f64, order: StepOrder) -> Collision
     let context = context(1);
     let material = elastic(&context, 1000.0, 0.3);
     let h = 0.05;
-    let options =
-        Options { dimension: 2, spacing: h, transfer, pic_rate, order, cfl: 0.2, ..Options::default() };
+    let options = Options {
+        dimension: 2,
+        spacing: h,
+        transfer,
+        pic_rate,
+        order,
+        cfl: 0.2,
+        ..Options::default()
+    };
     let mut world = world(&context, &options);
     let bodies = [0.2, 0.8].map(|c| {
         let v = 0.1 * f64::signum(0.5 - c);

@@ -3,10 +3,16 @@
 //! gfortran cannot compare a `bind(c)` interface with a C prototype, so names, the order, number and kinds of arguments, the
 //! fields and sizes of structs, and the constants are compared here, by a reader that shares nothing with the generator.
 
+use super::compiler::{self, library_folder, read, run};
+use super::support::{repository, scratch_folder, target_folder};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// Drivers that exist in both languages, with arguments for a short run.
+const TWINS: [(&str, &[&str]); 2] =
+    [("01_hello", &["100"]), ("02_column_collapse", &["a=0.5", "a=2", "cells=16", "steps=300"])];
 
 const STRICT: [&str; 4] = ["-std=f2018", "-Wall", "-Werror", "-fimplicit-none"];
 
@@ -56,7 +62,7 @@ fn every_struct_has_the_same_fields_and_size() {
         .filter_map(|line| line.strip_prefix("LAHAR_ASSERT_LAYOUT(sizeof(")?.split_once(") == "))
         .map(|(name, size)| (name.to_string(), size.trim_end_matches(");").parse().unwrap()))
         .collect();
-    let program: String = sizes
+    let blocks: String = sizes
         .iter()
         .map(|(name, size)| {
             format!(
@@ -64,71 +70,58 @@ fn every_struct_has_the_same_fields_and_size() {
             )
         })
         .collect();
-    let program = format!(
-        "program sizes\nuse, intrinsic :: iso_c_binding\nuse lahar\nimplicit none\n{program}end program\n"
+    let text = format!(
+        "program sizes\nuse, intrinsic :: iso_c_binding\nuse lahar\nimplicit none\n{blocks}end program\n"
     );
-    let folder = Folder::new("fortran_sizes");
-    fs::write(folder.0.join("sizes.f90"), program).unwrap();
-    compile(&folder.0, &["sizes.f90"], "sizes");
-    run(&mut Command::new(folder.0.join("sizes")));
+    let source = scratch_folder().join("sizes.f90");
+    fs::write(&source, text).expect("a source");
+    run(&mut Command::new(program(&source, &[])));
 }
 
 #[test]
 fn the_module_compiles_without_warnings_at_every_level_of_optimisation() {
     for level in ["-O0", "-O2"] {
-        let folder = Folder::new(&format!("fortran{level}"));
         let mut compiler = Command::new("gfortran");
-        compiler.args(STRICT).arg(level).arg("-c").arg(root().join("include/lahar/lahar.f90"));
-        run(compiler.current_dir(&folder.0));
+        compiler.args(STRICT).arg(level).arg("-c").arg(repository("include/lahar/lahar.f90"));
+        run(compiler.current_dir(scratch_folder()));
     }
 }
 
-/// Compiles sources in `folder` with the module, by the documented line and stricter.
-fn compile(folder: &Path, sources: &[&str], program: &str) {
-    let release = release_folder();
+#[test]
+fn fortran_twins_print_the_numbers_of_the_c_drivers() {
+    // Traps are on: a program that leaves its own floating-point environment to lahar would end at once.
+    const TRAPS: [&str; 1] = ["-ffpe-trap=invalid,zero,overflow"];
+    for (driver, arguments) in TWINS {
+        let source = |language| repository("examples-c").join(format!("{driver}.{language}"));
+        let c = numbers(&compiler::program(&source("c")), arguments);
+        let fortran = numbers(&program(&source("f90"), &TRAPS), arguments);
+        assert!(c.len() > 8, "{driver} printed only {} numbers", c.len());
+        assert_eq!(c, fortran, "{driver}");
+    }
+}
+
+/// Compiles a Fortran program with the module, by the documented line and stricter; the path of the program.
+fn program(source: &Path, more: &[&str]) -> PathBuf {
+    let library = library_folder();
+    let folder = scratch_folder();
+    let target = folder.join(source.file_stem().expect("a file name"));
     let mut compiler = Command::new("gfortran");
-    compiler.args(STRICT).arg("-O2").arg(root().join("include/lahar/lahar.f90")).args(sources);
-    compiler.args(["-o", program]).arg(format!("-L{}", release.display())).arg("-llahar");
-    compiler.arg(format!("-Wl,-rpath,{}", release.display()));
-    run(compiler.current_dir(folder));
+    compiler.args(STRICT).arg("-O2").args(more).arg(repository("include/lahar/lahar.f90"));
+    compiler.arg(source).arg("-o").arg(&target).arg("-L").arg(&library).arg("-llahar");
+    compiler.arg(format!("-Wl,-rpath,{}", library.display()));
+    run(compiler.current_dir(&folder)); // where lahar.mod goes
+    target
 }
 
-/// The folder of `liblahar.so`: two above the test's executable, `target/release/deps/it-...`.
-fn release_folder() -> PathBuf {
-    let exe = std::env::current_exe().expect("the test knows where it stands");
-    exe.parent().and_then(Path::parent).expect("target/release").to_path_buf()
-}
-
-/// A folder of its own for a test, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("lahar_{name}_{}", std::process::id()));
-        fs::create_dir_all(&path).expect("a folder for the test");
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn run(command: &mut Command) {
-    let output = command.output().unwrap_or_else(|e| panic!("cannot start {command:?}: {e}"));
-    let (out, err) = (&output.stdout, &output.stderr);
-    let text = format!("{}{}", String::from_utf8_lossy(out), String::from_utf8_lossy(err));
-    assert!(output.status.success(), "{command:?} ended with {}:\n{text}", output.status);
-}
-
-fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(path: &str) -> String {
-    fs::read_to_string(root().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+/// The lines `name = value` that a driver prints.
+fn numbers(program: &Path, arguments: &[&str]) -> Vec<(String, f64)> {
+    let mut driver = Command::new(program);
+    driver.args(arguments).env("LAHAR_PLUGIN_PATH", target_folder());
+    let printed = run(&mut driver);
+    let lines = printed.lines().filter_map(|line| line.split_once('='));
+    lines
+        .map(|(name, value)| (name.trim().to_string(), value.trim().parse().expect("a number")))
+        .collect()
 }
 
 // ---- the header

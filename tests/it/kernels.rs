@@ -36,7 +36,13 @@ fn copy_of<const D: usize>(world: &World, body: i64) -> (Vec<Particle<D>>, Vec<[
 }
 
 /// Stress of one point after a step with the velocity gradient `l`: rotation, then the material.
-fn updated_stress(material: &Material, stress: [f64; 6], l: &Mat3, dt: f64, density: f64) -> [f64; 6] {
+fn updated_stress(
+    material: &Material,
+    stress: [f64; 6],
+    l: &Mat3,
+    dt: f64,
+    density: f64,
+) -> [f64; 6] {
     with_scratch(material, 1, |s| {
         let (rotated, strain) = (rotate(&step_rotation(l, dt), stress), symmetric_part(&(l * dt)));
         for c in 0..6 {
@@ -59,8 +65,8 @@ fn walls(dimension: usize) -> Vec<Wall> {
     let kinds = [WallKind::Friction, WallKind::Slip, WallKind::Separating, WallKind::Sticky];
     let wall = |n: usize| Wall {
         axis: n % dimension,
-        side: if n % 2 == 0 { 1 } else { -1 },
-        position: if n % 2 == 0 { -0.71 } else { 1.13 },
+        side: if n < 2 { 1 } else { -1 },
+        position: if n < 2 { -0.71 } else { 1.13 },
         kind: kinds[n],
         friction: 0.3,
     };
@@ -92,7 +98,8 @@ fn one_step_agrees<const D: usize>(options: &Options, threads: usize) {
         stresses[k] = updated_stress(&material, stresses[k], &l, dt, p.mass / p.volume);
         k += 1;
     });
-    let flat = |f: &dyn Fn(&Particle<D>) -> Vec<f64>| textbook.iter().flat_map(f).collect::<Vec<_>>();
+    let flat =
+        |f: &dyn Fn(&Particle<D>) -> Vec<f64>| textbook.iter().flat_map(f).collect::<Vec<_>>();
     let c_of = |p: &Particle<D>| p.c.transpose().iter().copied().collect();
     let mut pairs = vec![
         ("position", flat(&|p| p.x.iter().copied().collect())),

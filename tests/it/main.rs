@@ -1,14 +1,22 @@
 //! The integration tests, one binary: each module is one concern.
+#![allow(clippy::print_stdout)] // tests report the figures that they judge
+
+mod compiler;
+mod setup;
+mod support;
 
 mod bad_input;
-mod compiler;
+mod bar;
+mod determinism;
+mod discs;
 mod fortran;
 mod header;
 mod host;
-mod readme;
-mod tidy;
-mod setup;
-mod kernels;
 mod invariants;
+mod kernels;
 mod plugins;
-mod support;
+mod readme;
+mod sparse_grid;
+mod tank;
+mod tidy;
+mod vtp;

@@ -1,6 +1,5 @@
 //! Worlds for tests.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use lahar::context::Context;
@@ -10,19 +9,13 @@ use lahar::world::World;
 use lahar::world::host_arrays::{ParticleArrays, Strided, StridedMut, Strides};
 use lahar::world::options::Options;
 
-/// The folder of the built libraries: that of the test's own executable, or its parent.
-pub fn library_folder() -> PathBuf {
-    let test = std::env::current_exe().expect("a test knows its own path");
-    test.parent().and_then(|deps| deps.parent()).expect("target/<profile>/deps/test").to_path_buf()
-}
+use crate::support::plugin_path;
 
 /// A context with all shipped plugins. A plugin that was not built fails the test.
 pub fn context(threads: usize) -> Arc<Context> {
     let context = Context::new(Some(threads)).expect("a context");
     for plugin in ["linear_elastic", "drucker_prager", "newtonian"] {
-        let path = library_folder().join(format!("liblahar_{plugin}.so"));
-        let path = path.to_str().expect("a UTF-8 path");
-        context.load_plugin(path).unwrap_or_else(|e| panic!("build the workspace first: {e}"));
+        context.load_plugin(&plugin_path(plugin)).expect("a plugin");
     }
     context
 }

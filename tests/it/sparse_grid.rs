@@ -115,8 +115,15 @@ fn fly(transfer: TransferKind, order: StepOrder) {
     let material = elastic(&context, e, 0.3);
     let h = 0.1;
     let gravity = [0.0, 0.0, -1.0];
-    let options =
-        Options { dimension: 3, spacing: h, transfer, order, gravity, cfl: 1.0, ..Options::default() };
+    let options = Options {
+        dimension: 3,
+        spacing: h,
+        transfer,
+        order,
+        gravity,
+        cfl: 1.0,
+        ..Options::default()
+    };
     let mut world = world(&context, &options);
     let region = a_box([0.0, 0.0, 0.0], [0.2, 0.2, 0.2]);
     let v0 = [100.0, 10.0, 5.0];

@@ -85,7 +85,9 @@ fn ramped(cells: usize, damping: f64) -> (f64, f64) {
 fn a_linear_tank_filled_by_a_ramp_has_the_hydrostatic_pressure() {
     for cells in [10, 20] {
         let (error, anisotropy) = ramped(cells, 0.2);
-        println!("linear, H = {cells} h: cell mean off by {error:e}, horizontal - vertical {anisotropy:e}");
+        println!(
+            "linear, H = {cells} h: cell mean off by {error:e}, horizontal - vertical {anisotropy:e}"
+        );
         assert!(error <= 3e-3, "{cells} cells: {error:e}");
         assert!(anisotropy <= 1e-12, "{anisotropy:e}");
     }

@@ -1,8 +1,10 @@
 //! The rules of the house that a program can check. Each test names the file and line that breaks one.
 
+use super::compiler::read;
+use super::support::repository;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Folders whose Rust files may hold `unsafe`: the two C boundaries, the lanes, and the plugin ABI with its adapters.
 /// Tests may too, since they stand in for C hosts and plugins; their count is held like that of the others.
@@ -150,18 +152,10 @@ fn docs_do_not_name_files_that_do_not_exist() {
                 && !quoted.starts_with(['/', '.', '-'])
                 && !quoted.starts_with("target/");
             let known =
-                is_path && root().join(quoted.split('/').next().unwrap_or_default()).exists();
-            assert!(!known || root().join(quoted).exists(), "{document} names `{quoted}`");
+                is_path && repository(quoted.split('/').next().unwrap_or_default()).exists();
+            assert!(!known || repository(quoted).exists(), "{document} names `{quoted}`");
         }
     }
-}
-
-fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(path: &str) -> String {
-    fs::read_to_string(root().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
 /// Every file of the repository with one of the extensions, as a path from its root, sorted.
@@ -175,13 +169,14 @@ fn files(extensions: &[&str]) -> Vec<String> {
                     visit(&path, extensions, found);
                 }
             } else if path.extension().is_some_and(|e| extensions.iter().any(|x| e == *x)) {
-                let inside = path.strip_prefix(root()).expect("a path inside the repository");
+                let inside =
+                    path.strip_prefix(repository("")).expect("a path inside the repository");
                 found.push(inside.to_string_lossy().into_owned());
             }
         }
     }
     let mut found = Vec::new();
-    visit(&root(), extensions, &mut found);
+    visit(&repository(""), extensions, &mut found);
     found.sort();
     assert!(!found.is_empty(), "no files with {extensions:?}");
     found

@@ -9,7 +9,7 @@ pub fn test() -> Result<(), String> {
     setup::run(setup::Need::Tests)?;
     process::cargo(&["build", "--release", "--workspace"])?;
     process::cargo(&["test", "--doc", "--release", "--workspace"])?;
-    process::cargo(&["nextest", "run", "--release", "--workspace"])
+    process::cargo(&["nextest", "run", "--release", "--workspace", "--no-fail-fast"])
 }
 
 /// What runs on every change.

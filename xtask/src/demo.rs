@@ -28,9 +28,8 @@ pub fn run() -> Result<(), String> {
         .env("LAHAR_PLUGIN_PATH", &release)
         .env("LAHAR_NUM_THREADS", threads.to_string())
         .current_dir(process::root());
-    println!("$ {} {}", program.display(), frames.display());
-    let printed = process::output_of(&mut driver)?;
-    print!("{printed}");
+    eprintln!("the driver runs for a minute or two");
+    let printed = process::shown_output_of(&mut driver)?;
 
     let all = picture::read_frames(&frames, &printed)?;
     let chosen = spread(all, 6);

@@ -1,5 +1,6 @@
 //! Running other programs, and where things stand.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -47,6 +48,25 @@ pub fn output_of(command: &mut Command) -> Result<String, String> {
         return Err(format!("`{line}` ended with {}", output.status));
     }
     String::from_utf8(output.stdout).map_err(|e| format!("`{line}` printed no UTF-8: {e}"))
+}
+
+/// Runs a prepared command, shows each line of its standard output as it comes, and gives the whole of it.
+pub fn shown_output_of(command: &mut Command) -> Result<String, String> {
+    let line = shown(command);
+    eprintln!("$ {line}");
+    let mut child = command
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(|e| format!("cannot start `{line}`: {e}"))?;
+    let mut text = String::new();
+    for printed in child.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines()) {
+        let printed = printed.map_err(|e| format!("cannot read from `{line}`: {e}"))?;
+        println!("{printed}");
+        text.push_str(&printed);
+        text.push('\n');
+    }
+    let status = child.wait().map_err(|e| format!("`{line}`: {e}"))?;
+    if status.success() { Ok(text) } else { Err(format!("`{line}` ended with {status}")) }
 }
 
 /// Whether a program starts and ends well, with its output thrown away.
