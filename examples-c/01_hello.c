@@ -5,14 +5,14 @@
  *
  *   cc -std=c99 -Wall -Wextra -Werror -Iinclude examples-c/01_hello.c \
  *      -Ltarget/release -llahar -Wl,-rpath,$PWD/target/release -lm -o 01_hello
- *   LAHAR_PLUGIN_PATH=target/release ./01_hello [number of steps, 500 if not given]
+ *   LAHAR_PLUGIN_PATH=$PWD/target/release ./01_hello [number of steps, 1000 if not given]
  */
 
 #include "check.h"
 
 int main(int argc, char **argv) {
-    const double gravity = 9.81, dt = 1e-3; /* [m/s^2], [s] */
-    const int steps = argc > 1 ? atoi(argv[1]) : 500;
+    const double gravity = 9.81, dt = 5e-4; /* [m/s^2], [s] */
+    const int steps = argc > 1 ? atoi(argv[1]) : 1000;
     int32_t major, minor, patch, threads;
 
     /* A context: threads (0: as LAHAR_NUM_THREADS says, else 1), log, plugins. */

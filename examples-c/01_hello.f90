@@ -4,13 +4,13 @@
 !
 !   gfortran -std=f2018 -Wall -O2 include/lahar/lahar.f90 examples-c/01_hello.f90 \
 !     -Ltarget/release -llahar -Wl,-rpath,$PWD/target/release -o 01_hello_f90
-!   LAHAR_PLUGIN_PATH=$PWD/target/release ./01_hello_f90 [number of steps, 500 if not given]
+!   LAHAR_PLUGIN_PATH=$PWD/target/release ./01_hello_f90 [number of steps, 1000 if not given]
 
 program hello
   use, intrinsic :: iso_c_binding, only: c_int32_t
   use lahar
   implicit none
-  real(lahar_real), parameter :: gravity = 9.81_lahar_real, dt = 1e-3_lahar_real ! [m/s^2], [s]
+  real(lahar_real), parameter :: gravity = 9.81_lahar_real, dt = 5e-4_lahar_real ! [m/s^2], [s]
   type(lahar_context) :: context
   type(lahar_material) :: rubber
   type(lahar_world) :: world
@@ -22,7 +22,7 @@ program hello
   integer(c_int32_t) :: major(1), minor(1), patch(1)
   integer :: steps, step
 
-  steps = argument(1, 500)
+  steps = argument(1, 1000)
 
   ! A context: threads (as LAHAR_NUM_THREADS says, else 1), log, plugins.
   call context%create()

@@ -114,7 +114,7 @@ fn fly(transfer: TransferKind, order: StepOrder) {
     let e = 1e4;
     let material = elastic(&context, e, 0.3);
     let h = 0.1;
-    let gravity = [0.0, 0.0, -1.0];
+    let gravity = [0.0, 0.0, -0.1];
     let options = Options {
         dimension: 3,
         spacing: h,
@@ -131,7 +131,7 @@ fn fly(transfer: TransferKind, order: StepOrder) {
     assert!(world.particle_count(body).expect("a body") <= 64);
     let start = world.totals(None).expect("totals").center_of_mass;
     let (mut blocks, mut bytes) = (0, 0);
-    let dt = 0.9 * h / 104.0;
+    let dt = 0.9 * h / 106.0;
     while world.totals(None).expect("totals").center_of_mass[0] - start[0] < 1e5 * h {
         world.step(Some(dt)).expect("a flight");
         let stats = world.grid_stats();
