@@ -2,7 +2,7 @@
 
 use crate::grid::key::EDGE;
 use crate::grid::tiles::{TileNode, load_tile};
-use crate::grid::{Grid, Key, Lanes};
+use crate::grid::{Grid, Key, Lanes, add_lanes};
 use crate::particles::ChunkMut;
 use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::step::particles_to_grid::corner;
@@ -134,20 +134,20 @@ fn receive<const N: usize, const D: usize, const GRADIENT: usize>(
         let mut moment_of_row = [0.0; 4];
         let mut slope_of_row = [0.0; 4];
         for (n, node) in nodes[row.offset..row.offset + N].iter().enumerate() {
-            add(&mut of_row[0], z.w[n], &node[0]);
-            add(&mut of_row[1], z.w[n], &node[1]);
-            add(&mut moment_of_row, z.w[n] * (n as f64 - z.fraction), &node[0]);
-            add(&mut slope_of_row, z.dw[n], &node[GRADIENT]);
+            add_lanes(&mut of_row[0], z.w[n], &node[0]);
+            add_lanes(&mut of_row[1], z.w[n], &node[1]);
+            add_lanes(&mut moment_of_row, z.w[n] * (n as f64 - z.fraction), &node[0]);
+            add_lanes(&mut slope_of_row, z.dw[n], &node[GRADIENT]);
         }
-        add(&mut sums[0], row.w, &of_row[0]);
-        add(&mut sums[1], row.w, &of_row[1]);
+        add_lanes(&mut sums[0], row.w, &of_row[0]);
+        add_lanes(&mut sums[1], row.w, &of_row[1]);
         for d in 0..D - 1 {
             let r = row.node[d] as f64 - stencil.axes[d].fraction;
-            add(&mut moment[d], row.w * r, &of_row[0]);
-            add(&mut slope[d], row.dw[d], &of_row[GRADIENT]);
+            add_lanes(&mut moment[d], row.w * r, &of_row[0]);
+            add_lanes(&mut slope[d], row.dw[d], &of_row[GRADIENT]);
         }
-        add(&mut moment[D - 1], row.w, &moment_of_row);
-        add(&mut slope[D - 1], row.w, &slope_of_row);
+        add_lanes(&mut moment[D - 1], row.w, &moment_of_row);
+        add_lanes(&mut slope[D - 1], row.w, &slope_of_row);
     });
     let vector = |l: &Lanes| std::array::from_fn(|a| l[a + 1]);
     Received {
@@ -155,13 +155,6 @@ fn receive<const N: usize, const D: usize, const GRADIENT: usize>(
         increment: vector(&sums[1]),
         moment: std::array::from_fn(|a| std::array::from_fn(|b| moment[b][a + 1] * h)),
         gradient: std::array::from_fn(|a| std::array::from_fn(|b| slope[b][a + 1] / h)),
-    }
-}
-
-#[inline(always)]
-fn add(y: &mut Lanes, a: f64, x: &Lanes) {
-    for l in 0..4 {
-        y[l] += a * x[l];
     }
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::grid::blocks::Neighbours;
 use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
-use crate::grid::{EDGE, Key, Lanes, NONE, Run};
+use crate::grid::{EDGE, Key, Lanes, NONE, Run, add_lanes};
 use crate::particles::Particles;
 use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::tensor::SYMMETRIC_INDEX;
@@ -82,14 +82,6 @@ fn pull<const D: usize>(
         target.par_chunks_mut(nodes).zip(backward).for_each(add);
     } else {
         target.chunks_mut(nodes).zip(backward).for_each(add);
-    }
-}
-
-/// y += a x.
-#[inline(always)]
-fn add_lanes(y: &mut Lanes, a: f64, x: &Lanes) {
-    for l in 0..4 {
-        y[l] += a * x[l];
     }
 }
 
