@@ -76,6 +76,8 @@ static void make_world(lahar_context *context, const settings *s, column *c) {
     check(lahar_world_options_init(&options, sizeof options));
     options.dimension = 2;
     options.spacing = c->h;
+    /* walls of quadratic shapes stand half a cell from a node: then no free node reaches behind them */
+    options.origin[0] = options.origin[1] = 0.5 * c->h;
     options.gravity[1] = -gravity;
     options.transfer = s->apic ? LAHAR_TRANSFER_APIC : LAHAR_TRANSFER_PIC_FLIP;
     options.pic_rate = 0.01 * c->wave_speed / (0.35 * c->h);

@@ -96,6 +96,8 @@ contains
     options = lahar_default_options()
     options%dimension = 2
     options%spacing = c%h
+    ! walls of quadratic shapes stand half a cell from a node: then no free node reaches behind them
+    options%origin(1:2) = 0.5_lahar_real * c%h
     options%gravity(2) = -gravity
     options%transfer = merge(LAHAR_TRANSFER_APIC, LAHAR_TRANSFER_PIC_FLIP, s%apic)
     options%pic_rate = 0.01_lahar_real * c%wave_speed / (0.35_lahar_real * c%h)

@@ -37,7 +37,8 @@ pub enum Status {
     BufferTooSmall = 13,
     /// The time step exceeds the stable one; nothing was done.
     StepTooLarge = 100,
-    /// The host left a value in a particle field that is not finite; nothing was done.
+    /// The host left a value in a particle field that is not finite, not positive where it must be, or outside the grid; nothing was
+    /// done.
     NonFiniteInput = 101,
     /// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
     OutsideGrid = 102,
@@ -53,6 +54,8 @@ pub enum Status {
     PluginRefused = 204,
     /// Threads could not be started, or the process was forked after they were.
     Threads = 205,
+    /// The memory for particles or grid is not to be had; nothing has changed.
+    OutOfMemory = 206,
     /// A defect of lahar was caught; the object is poisoned.
     Panic = -1,
     /// A material failed at a point in the middle of a step; the world is poisoned.
@@ -65,7 +68,7 @@ pub enum Status {
 
 impl Status {
     /// Every status, in the order of the documentation.
-    pub const ALL: [Status; 27] = [
+    pub const ALL: [Status; 28] = [
         Status::Ok,
         Status::NullArgument,
         Status::StructSize,
@@ -89,6 +92,7 @@ impl Status {
         Status::PluginAbi,
         Status::PluginRefused,
         Status::Threads,
+        Status::OutOfMemory,
         Status::Panic,
         Status::MaterialFailed,
         Status::NonFinite,

@@ -46,6 +46,7 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_ABI = 203_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_REFUSED = 204_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_THREADS = 205_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ERROR_OUT_OF_MEMORY = 206_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PANIC = -1_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_MATERIAL_FAILED = -2_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_NON_FINITE = -3_c_int32_t

@@ -90,7 +90,8 @@ extern "C" {
 // The time step exceeds the stable one; nothing was done.
 #define LAHAR_ERROR_STEP_TOO_LARGE 100
 
-// The host left a value in a particle field that is not finite; nothing was done.
+// The host left a value in a particle field that is not finite, not positive where it must be, or a position too far away;
+// nothing was done.
 #define LAHAR_ERROR_NON_FINITE_INPUT 101
 
 // A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
@@ -113,6 +114,9 @@ extern "C" {
 
 // Threads could not be started, or the process was forked after they were.
 #define LAHAR_ERROR_THREADS 205
+
+// The memory for particles or grid is not to be had; nothing has changed.
+#define LAHAR_ERROR_OUT_OF_MEMORY 206
 
 // A defect of lahar was caught; the object is poisoned.
 #define LAHAR_ERROR_PANIC -1
@@ -507,7 +511,7 @@ lahar_status lahar_material_value(const lahar_material *material,
  * units may be used; those named are SI. In two dimensions a world is plane strain and 1 m thick.
  */
 
-// Shape functions: linear.
+// Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
 #define LAHAR_SHAPE_LINEAR 0
 
 // Shape functions: quadratic B-splines (default).
@@ -519,10 +523,14 @@ lahar_status lahar_material_value(const lahar_material *material,
 // Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
 #define LAHAR_TRANSFER_APIC 1
 
-// Order of a step: stresses before the grid moves.
+// Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
+// from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
+// touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
+// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; quadratic shapes have no such trouble.
 #define LAHAR_ORDER_USL 0
 
-// Order of a step: stresses last, from the velocities of the moved particles mapped again (default).
+// Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
+// second time, with the same weights, and velocity gradients and stresses come from those.
 #define LAHAR_ORDER_MUSL 1
 
 // Grid: blocks come and go with the particles (default).
@@ -551,7 +559,8 @@ typedef struct lahar_world_options {
     int32_t order;
     // One of LAHAR_GRID_*.
     int32_t grid_policy;
-    // Distance of the grid's nodes [m], > 0; has no default.
+    // Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings from `origin` or from
+    // x = 0 are refused.
     double spacing;
     // Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
     double origin[3];
@@ -580,8 +589,8 @@ lahar_status lahar_world_options_init(lahar_world_options *options, int64_t size
 //
 // `options`: copied.
 // `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-// LAHAR_ERROR_UNSUPPORTED (the combination; the message tells the nearest that is supported).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
+// static grid).
 // Thread: any
 lahar_status lahar_world_create(lahar_context *context,
                                 const lahar_world_options *options,
@@ -608,8 +617,11 @@ lahar_status lahar_world_set_damping(lahar_world *world, double damping);
 // One step of the given length.
 //
 // `dt`: [s], > 0 and not above lahar_world_stable_dt.
-// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt), LAHAR_ERROR_STEP_TOO_LARGE (the
-// stable step is in `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote),
+// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is time
+// again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
+// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a
+// static grid or too far away; the world cannot step until the host writes positions back or removes the body),
+// LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
 // LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
 // lahar_last_error_info tells the body, the particle, the step and the time.
@@ -620,9 +632,11 @@ lahar_status lahar_world_step(lahar_world *world,
 // One step of the stable length.
 //
 // `dt`: gets the length of the step [s]; may be NULL.
-// Errors: as lahar_world_step.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite, or so small that
+// time + dt is time again.
 // Thread: owner
-lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
+lahar_status lahar_world_step_auto(lahar_world *world,
+                                   double *dt);
 
 // Steps of the stable length until a time is reached; the last two are shortened to hit it exactly.
 //
@@ -630,7 +644,9 @@ lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
 // `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
 // `steps_done`: gets the number of committed steps, on failure too; may be NULL.
 // `time`: gets the time that was reached [s], on failure too; may be NULL.
-// Errors: as lahar_world_step; a positive status means that no partial step was committed.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or past, if `max_steps` is
+// negative, or if the stable step becomes so small that time + dt is time again. A positive status means that no partial
+// step was committed.
 // Thread: owner
 lahar_status lahar_world_advance(lahar_world *world,
                                  double until,
@@ -640,9 +656,13 @@ lahar_status lahar_world_advance(lahar_world *world,
 
 // Longest step that is stable now [s]: infinity without particles.
 //
+// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not above
+// what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
+// dimension, nu the kinematic viscosity.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_world_stable_dt(const lahar_world *world, double *dt);
+lahar_status lahar_world_stable_dt(const lahar_world *world,
+                                   double *dt);
 
 // Time of the world [s].
 //
@@ -687,7 +707,7 @@ typedef struct lahar_particles {
     int32_t reserved;
     // Number of particles.
     int64_t count;
-    // Positions [m], shape [count, dimension].
+    // Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and from x = 0.
     lahar_array position;
     // Volumes [m^3], shape [count], > 0; in two dimensions areas times 1 m.
     lahar_array volume;
@@ -707,9 +727,10 @@ typedef struct lahar_fill {
     uint32_t struct_size;
     // Particles per cell of the grid along each axis, >= 1; default 2.
     int32_t particles_per_cell;
-    // Mass density [kg/m^3], > 0; 0: not given.
+    // Mass density [kg/m^3], > 0; 0: not given. The mass of the body is that of the lattice points inside the shape, each
+    // with the volume of its part of the lattice: exact for a box; a sphere of radius h, the spacing, may be 10 % off.
     double density;
-    // Mass of the whole body [kg], > 0; 0: not given.
+    // Mass of the whole body [kg], > 0; 0: not given. Shared evenly by the particles: the mass is exact.
     double mass;
     // Velocity of all particles [m/s], shape [3]; default 0.
     double velocity[3];
@@ -735,8 +756,8 @@ lahar_status lahar_fill_init(lahar_fill *fill, int64_t size);
 //
 // `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 // `body`: gets the id of the new body; must not be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive,
-// strides), LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive, too
+// far away, strides), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_add_particles(lahar_world *world,
                                       const lahar_material *material,
@@ -759,7 +780,9 @@ lahar_status lahar_body_add_box(lahar_world *world,
 // Adds a body that fills a sphere, or a disc in two dimensions.
 //
 // `center`: [m], shape [3]. `radius`: [m], > 0.
-// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside, which may be
+// 10 % off if the radius is the spacing; give `mass` for an exact one.
+// `body`: gets the id of the new body; must not be NULL.
 // Errors: as lahar_body_add_particles.
 // Thread: owner
 lahar_status lahar_body_add_sphere(lahar_world *world,
@@ -772,7 +795,9 @@ lahar_status lahar_body_add_sphere(lahar_world *world,
 // Adds a body that fills a simple polygon; two dimensions only.
 //
 // `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass` for
+// an exact one.
+// `body`: gets the id of the new body; must not be NULL.
 // Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 // Thread: owner
 lahar_status lahar_body_add_polygon(lahar_world *world,
@@ -881,10 +906,14 @@ lahar_status lahar_body_read(const lahar_world *world,
                              int64_t component_stride,
                              int64_t point_stride);
 
-// Copies a field from the host, in the order of particle ids. The values are checked before the next step.
+// Copies a field from the host, in the order of particle ids.
 //
+// A value that is not finite is refused by this call, with nothing written. Masses and volumes that are not positive and
+// positions outside the grid are found before the next step, which answers LAHAR_ERROR_NON_FINITE_INPUT until the host
+// writes good ones.
 // `count`, `values`, strides: as in lahar_body_read.
-// Errors: as lahar_body_read, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
+// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite, LAHAR_ERROR_READ_ONLY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_write(lahar_world *world,
                               int64_t body,
@@ -985,6 +1014,12 @@ void lahar_view_free(lahar_view *view);
 #define LAHAR_WALL_FRICTION 3
 
 // A plane wall. Fill it with lahar_wall_init, then set what is wanted.
+//
+// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`: 0
+// for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
+// half-space. Place walls on node planes for linear shapes, and half a cell from node planes for quadratic ones (for
+// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up to
+// h late. Walls apply in the order in which they were added.
 typedef struct lahar_wall {
     // sizeof(lahar_wall); set by lahar_wall_init.
     uint32_t struct_size;
@@ -1157,7 +1192,7 @@ typedef struct lahar_totals {
     double mass;
     // Momentum [kg m/s], shape [3].
     double momentum[3];
-    // Angular momentum about the grid's origin [kg m^2/s], shape [3].
+    // Angular momentum about the origin of space x = 0 [kg m^2/s], shape [3].
     double angular_momentum[3];
     // Kinetic energy [J].
     double kinetic_energy;
@@ -1179,8 +1214,10 @@ lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_to
 
 // Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 //
-// `path`: NUL-terminated, UTF-8; an existing file is replaced.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (empty path), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is replaced
+// whole or not at all.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
+// LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_write_vtp(const lahar_world *world,
                                    const char *path);

@@ -3,7 +3,7 @@
 //! A wall acts on every node whose signed distance to it (positive on the side of the material) is at most its reach: the
 //! radius of the shape function's support less one cell, 0 for linear and h/2 for quadratic shapes. With the wall on a node plane
 //! (linear) or a half-cell plane (quadratic) no free node's function then reaches the wall; elsewhere the wall acts up
-//! to one cell early or late.
+//! to one cell late. All nodes behind it are held too; several walls act in the order in which they were added.
 
 use crate::error::{Error, Result};
 

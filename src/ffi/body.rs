@@ -37,7 +37,7 @@ pub struct lahar_particles {
     pub reserved: i32,
     /// Number of particles.
     pub count: i64,
-    /// Positions [m], shape [count, dimension].
+    /// Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and from x = 0.
     pub position: lahar_array,
     /// Volumes [m^3], shape [count], > 0; in two dimensions areas times 1 m.
     pub volume: lahar_array,
@@ -80,9 +80,10 @@ pub struct lahar_fill {
     pub struct_size: u32,
     /// Particles per cell of the grid along each axis, >= 1; default 2.
     pub particles_per_cell: i32,
-    /// Mass density [kg/m^3], > 0; 0: not given.
+    /// Mass density [kg/m^3], > 0; 0: not given. The mass of the body is that of the lattice points inside the shape, each
+    /// with the volume of its part of the lattice: exact for a box; a sphere of radius h, the spacing, may be 10 % off.
     pub density: f64,
-    /// Mass of the whole body [kg], > 0; 0: not given.
+    /// Mass of the whole body [kg], > 0; 0: not given. Shared evenly by the particles: the mass is exact.
     pub mass: f64,
     /// Velocity of all particles [m/s], shape [3]; default 0.
     pub velocity: [f64; 3],
@@ -137,8 +138,8 @@ pub unsafe extern "C" fn lahar_fill_init(fill: *mut lahar_fill, size: i64) -> la
 ///
 /// `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 /// `body`: gets the id of the new body; must not be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive,
-/// strides), LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive, too
+/// far away, strides), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_add_particles(
@@ -235,7 +236,9 @@ pub unsafe extern "C" fn lahar_body_add_box(
 /// Adds a body that fills a sphere, or a disc in two dimensions.
 ///
 /// `center`: [m], shape [3]. `radius`: [m], > 0.
-/// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside, which may be
+/// 10 % off if the radius is the spacing; give `mass` for an exact one.
+/// `body`: gets the id of the new body; must not be NULL.
 /// Errors: as lahar_body_add_particles.
 /// Thread: owner
 ///
@@ -261,7 +264,9 @@ pub unsafe extern "C" fn lahar_body_add_sphere(
 /// Adds a body that fills a simple polygon; two dimensions only.
 ///
 /// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-/// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass` for
+/// an exact one.
+/// `body`: gets the id of the new body; must not be NULL.
 /// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 /// Thread: owner
 #[unsafe(no_mangle)]

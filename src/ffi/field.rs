@@ -176,10 +176,14 @@ pub unsafe extern "C" fn lahar_body_read(
     })
 }
 
-/// Copies a field from the host, in the order of particle ids. The values are checked before the next step.
+/// Copies a field from the host, in the order of particle ids.
 ///
+/// A value that is not finite is refused by this call, with nothing written. Masses and volumes that are not positive and
+/// positions outside the grid are found before the next step, which answers LAHAR_ERROR_NON_FINITE_INPUT until the host
+/// writes good ones.
 /// `count`, `values`, strides: as in lahar_body_read.
-/// Errors: as lahar_body_read, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
+/// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite, LAHAR_ERROR_READ_ONLY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_write(

@@ -26,7 +26,7 @@ pub struct lahar_totals {
     pub mass: f64,
     /// Momentum [kg m/s], shape [3].
     pub momentum: [f64; 3],
-    /// Angular momentum about the grid's origin [kg m^2/s], shape [3].
+    /// Angular momentum about the origin of space x = 0 [kg m^2/s], shape [3].
     pub angular_momentum: [f64; 3],
     /// Kinetic energy [J].
     pub kinetic_energy: f64,
@@ -82,8 +82,10 @@ fn from_totals(totals: &Totals) -> lahar_totals {
 
 /// Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 ///
-/// `path`: NUL-terminated, UTF-8; an existing file is replaced.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (empty path), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+/// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is replaced
+/// whole or not at all.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
+/// LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_write_vtp(

@@ -38,7 +38,8 @@ pub const LAHAR_ERROR_UNSUPPORTED: i32 = 12;
 pub const LAHAR_ERROR_BUFFER_TOO_SMALL: i32 = 13;
 /// The time step exceeds the stable one; nothing was done.
 pub const LAHAR_ERROR_STEP_TOO_LARGE: i32 = 100;
-/// The host left a value in a particle field that is not finite; nothing was done.
+/// The host left a value in a particle field that is not finite, not positive where it must be, or a position too far away;
+/// nothing was done.
 pub const LAHAR_ERROR_NON_FINITE_INPUT: i32 = 101;
 /// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
 pub const LAHAR_ERROR_OUTSIDE_GRID: i32 = 102;
@@ -54,6 +55,8 @@ pub const LAHAR_ERROR_PLUGIN_ABI: i32 = 203;
 pub const LAHAR_ERROR_PLUGIN_REFUSED: i32 = 204;
 /// Threads could not be started, or the process was forked after they were.
 pub const LAHAR_ERROR_THREADS: i32 = 205;
+/// The memory for particles or grid is not to be had; nothing has changed.
+pub const LAHAR_ERROR_OUT_OF_MEMORY: i32 = 206;
 /// A defect of lahar was caught; the object is poisoned.
 pub const LAHAR_ERROR_PANIC: i32 = -1;
 /// A material failed at a point in the middle of a step; the world is poisoned.
@@ -88,6 +91,7 @@ pub(super) const TABLE: [(Status, i32, &CStr); Status::ALL.len()] = [
     (Status::PluginAbi, LAHAR_ERROR_PLUGIN_ABI, c"LAHAR_ERROR_PLUGIN_ABI"),
     (Status::PluginRefused, LAHAR_ERROR_PLUGIN_REFUSED, c"LAHAR_ERROR_PLUGIN_REFUSED"),
     (Status::Threads, LAHAR_ERROR_THREADS, c"LAHAR_ERROR_THREADS"),
+    (Status::OutOfMemory, LAHAR_ERROR_OUT_OF_MEMORY, c"LAHAR_ERROR_OUT_OF_MEMORY"),
     (Status::Panic, LAHAR_ERROR_PANIC, c"LAHAR_ERROR_PANIC"),
     (Status::MaterialFailed, LAHAR_ERROR_MATERIAL_FAILED, c"LAHAR_ERROR_MATERIAL_FAILED"),
     (Status::NonFinite, LAHAR_ERROR_NON_FINITE, c"LAHAR_ERROR_NON_FINITE"),

@@ -22,7 +22,7 @@ pub struct lahar_world {
     pub(super) cell: Arc<WorldCell>,
 }
 
-/// Shape functions: linear.
+/// Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
 pub const LAHAR_SHAPE_LINEAR: i32 = 0;
 /// Shape functions: quadratic B-splines (default).
 pub const LAHAR_SHAPE_QUADRATIC_BSPLINE: i32 = 1;
@@ -30,9 +30,13 @@ pub const LAHAR_SHAPE_QUADRATIC_BSPLINE: i32 = 1;
 pub const LAHAR_TRANSFER_PIC_FLIP: i32 = 0;
 /// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
 pub const LAHAR_TRANSFER_APIC: i32 = 1;
-/// Order of a step: stresses before the grid moves.
+/// Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
+/// from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
+/// touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
+/// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; quadratic shapes have no such trouble.
 pub const LAHAR_ORDER_USL: i32 = 0;
-/// Order of a step: stresses last, from the velocities of the moved particles mapped again (default).
+/// Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
+/// second time, with the same weights, and velocity gradients and stresses come from those.
 pub const LAHAR_ORDER_MUSL: i32 = 1;
 /// Grid: blocks come and go with the particles (default).
 pub const LAHAR_GRID_DYNAMIC: i32 = 0;
@@ -70,7 +74,8 @@ pub struct lahar_world_options {
     pub order: i32,
     /// One of LAHAR_GRID_*.
     pub grid_policy: i32,
-    /// Distance of the grid's nodes [m], > 0; has no default.
+    /// Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings from `origin` or from
+    /// x = 0 are refused.
     pub spacing: f64,
     /// Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
     pub origin: [f64; 3],
@@ -160,8 +165,8 @@ fn to_options(options: &lahar_world_options) -> Result<Options> {
 ///
 /// `options`: copied.
 /// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-/// LAHAR_ERROR_UNSUPPORTED (the combination; the message tells the nearest that is supported).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
+/// static grid).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_create(
@@ -231,8 +236,11 @@ pub unsafe extern "C" fn lahar_world_set_damping(
 /// One step of the given length.
 ///
 /// `dt`: [s], > 0 and not above lahar_world_stable_dt.
-/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt), LAHAR_ERROR_STEP_TOO_LARGE (the
-/// stable step is in `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote),
+/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is time
+/// again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
+/// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a
+/// static grid or too far away; the world cannot step until the host writes positions back or removes the body),
+/// LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
 /// LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
 /// lahar_last_error_info tells the body, the particle, the step and the time.
@@ -250,7 +258,8 @@ pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> l
 /// One step of the stable length.
 ///
 /// `dt`: gets the length of the step [s]; may be NULL.
-/// Errors: as lahar_world_step.
+/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite, or so small that
+/// time + dt is time again.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step_auto(
@@ -272,7 +281,9 @@ pub unsafe extern "C" fn lahar_world_step_auto(
 /// `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
 /// `steps_done`: gets the number of committed steps, on failure too; may be NULL.
 /// `time`: gets the time that was reached [s], on failure too; may be NULL.
-/// Errors: as lahar_world_step; a positive status means that no partial step was committed.
+/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or past, if `max_steps` is
+/// negative, or if the stable step becomes so small that time + dt is time again. A positive status means that no partial
+/// step was committed.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_advance(
@@ -307,6 +318,9 @@ fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
 
 /// Longest step that is stable now [s]: infinity without particles.
 ///
+/// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not above
+/// what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
+/// dimension, nu the kinematic viscosity.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use super::key::{Key, block_nodes, morton_order, split_node};
 use super::{EDGE, Lanes};
+use crate::error::Result;
+use crate::particles::reserve;
 
 /// No block.
 pub const NONE: u32 = u32::MAX;
@@ -141,35 +143,53 @@ impl<const D: usize> Grid<D> {
     }
 
     /// Makes exactly these blocks and the ones their tiles reach active; with `keep`, the present ones too.
-    pub fn set_blocks(&mut self, owners: &[Key<D>], keep: bool) {
-        let mut old = std::mem::take(&mut self.keys);
+    ///
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the grid as it was.
+    pub fn set_blocks(&mut self, owners: &[Key<D>], keep: bool) -> Result<()> {
         let mut new = std::mem::take(&mut self.spare);
         new.clear();
+        reserve(&mut new, (owners.len() << D) + self.keys.len(), "the blocks of the grid")?;
         for owner in owners {
             new.extend((0..1usize << D).map(|corner| step(owner, corner, 1)));
         }
         if keep {
-            new.extend_from_slice(&old);
+            new.extend_from_slice(&self.keys);
         }
         new.sort_unstable_by(morton_order);
         new.dedup();
-        self.removed =
-            old.iter().filter(|k| new.binary_search_by(|n| morton_order(n, k)).is_err()).count();
-        self.created = new.len() + self.removed - old.len();
-        if self.created + self.removed > 0 {
-            self.index.clear();
-            self.index.extend(new.iter().enumerate().map(|(b, k)| (*k, b as u32)));
-            self.rebuild_neighbours(&new);
-            let nodes = new.len() * block_nodes(D);
-            for record in [&mut self.velocity, &mut self.increment, &mut self.force] {
-                record.clear();
-                record.resize(nodes, [0.0; 4]);
-            }
+        let missing = |from: &[Key<D>], of: &[Key<D>]| {
+            let absent = |k: &&Key<D>| of.binary_search_by(|n| morton_order(n, k)).is_err();
+            from.iter().filter(absent).count()
+        };
+        let (created, removed) = (missing(&new, &self.keys), missing(&self.keys, &new));
+        if created + removed > 0 {
+            self.resize(&new)?;
         }
-        std::mem::swap(&mut self.keys, &mut new);
-        old.append(&mut new);
-        old.clear();
-        self.spare = old;
+        (self.created, self.removed) = (created, removed);
+        self.spare = std::mem::replace(&mut self.keys, new);
+        Ok(())
+    }
+
+    /// Room for the nodes of the blocks `keys`, and their neighbours.
+    fn resize(&mut self, keys: &[Key<D>]) -> Result<()> {
+        let (what, nodes) = ("the nodes of the grid", keys.len() * block_nodes(D));
+        let records = [&mut self.velocity, &mut self.increment, &mut self.force];
+        for record in records {
+            let more = nodes.saturating_sub(record.len());
+            reserve(record, more, what)?;
+        }
+        for table in [&mut self.forward, &mut self.backward] {
+            let more = keys.len().saturating_sub(table.len());
+            reserve(table, more, what)?;
+        }
+        self.index.clear();
+        self.index.extend(keys.iter().enumerate().map(|(b, k)| (*k, b as u32)));
+        self.rebuild_neighbours(keys);
+        for record in [&mut self.velocity, &mut self.increment, &mut self.force] {
+            record.clear();
+            record.resize(nodes, [0.0; 4]);
+        }
+        Ok(())
     }
 
     fn rebuild_neighbours(&mut self, keys: &[Key<D>]) {
@@ -200,13 +220,13 @@ mod tests {
     #[test]
     fn blocks_appear_with_their_neighbours_and_vanish_behind() {
         let mut grid = Grid::<2>::new(0.5, [0.0, 0.0]);
-        grid.set_blocks(&[[-1, 0]], false);
+        grid.set_blocks(&[[-1, 0]], false).expect("memory");
         let stats = grid.stats();
         assert_eq!((stats.active_blocks, stats.blocks_created, stats.blocks_removed), (4, 4, 0));
-        grid.set_blocks(&[[0, 0]], false);
+        grid.set_blocks(&[[0, 0]], false).expect("memory");
         let stats = grid.stats();
         assert_eq!((stats.active_blocks, stats.blocks_created, stats.blocks_removed), (4, 2, 2));
-        grid.set_blocks(&[[5, 5]], true);
+        grid.set_blocks(&[[5, 5]], true).expect("memory");
         assert_eq!(grid.stats().active_blocks, 8);
         let b = grid.find(&[0, 0]).expect("an owner is active") as usize;
         assert_eq!(grid.forward[b][0] as usize, b);
@@ -217,7 +237,7 @@ mod tests {
     #[test]
     fn a_node_is_found_by_its_index_and_back() {
         let mut grid = Grid::<3>::new(1.0, [0.0; 3]);
-        grid.set_blocks(&[[-2, 0, 7]], false);
+        grid.set_blocks(&[[-2, 0, 7]], false).expect("memory");
         for index in [[-8, 0, 28], [-5, 3, 31], [-1, 7, 35]] {
             let node = grid.find_node(index).expect("inside an active block");
             assert_eq!(grid.node_index(node), Some(index));

@@ -4,6 +4,8 @@
 //! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
 
 use super::{EDGE, Grid, Lanes, NONE};
+use crate::error::Result;
+use crate::particles::reserve;
 
 /// A node of a tile: [m, mv] and [–, f] on the way to the grid, R0 and R1 on the way back.
 pub type TileNode = [Lanes; 2];
@@ -46,7 +48,14 @@ impl Tiles {
     }
 
     /// Deals the runs of all bodies out to tiles. `blocks` is the number of active blocks, `dimension` the number of axes.
-    pub fn assign(&mut self, runs: impl Iterator<Item = Run>, blocks: usize, dimension: usize) {
+    ///
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
+    pub fn assign(
+        &mut self,
+        runs: impl Iterator<Item = Run>,
+        blocks: usize,
+        dimension: usize,
+    ) -> Result<()> {
         self.runs.clear();
         for mut run in runs {
             while run.end - run.first > TILE_PARTICLES {
@@ -79,8 +88,10 @@ impl Tiles {
         if nodes > self.nodes.len() || 4 * nodes < self.nodes.len() {
             self.nodes.clear();
             self.nodes.shrink_to(2 * nodes);
+            reserve(&mut self.nodes, nodes, "the tiles of the grid")?;
             self.nodes.resize(nodes, [[0.0; 4]; 2]);
         }
+        Ok(())
     }
 
     /// Nodes of a tile.

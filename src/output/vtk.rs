@@ -15,7 +15,7 @@ use crate::world::World;
 const LEVEL: u32 = 1;
 
 /// Writes the particles of all bodies with every field of the registry, the id of the body and the id of the particle. Vectors get
-/// three components; a state variable that a body does not have is not a number there.
+/// three components; a state variable that a body does not have is not a number there. A file of that name is replaced as a whole.
 pub fn write(world: &World, path: &Path) -> Result<()> {
     let failed = |what: String| {
         let path = path.display();
@@ -25,14 +25,20 @@ pub fn write(world: &World, path: &Path) -> Result<()> {
         )
     };
     if path.extension().and_then(|e| e.to_str()) != Some("vtp") {
-        return Err(failed("the name must end in .vtp".into()));
+        return Err(Error::invalid(format!("a VTP file ends in .vtp, got `{}`", path.display())));
     }
     let file = vtk(world)?
         .try_into_xml_format(Compressor::ZLib, LEVEL)
         .map_err(|error| failed(error.to_string()))?;
     let mut bytes = Vec::new();
     file.write(&mut bytes).map_err(|error| failed(error.to_string()))?;
-    std::fs::write(path, bytes).map_err(|error| failed(error.to_string()))
+    // written aside, so that an old file stays whole if the disk is full
+    let aside = path.with_extension("vtp.part");
+    let written = std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&aside); // it may not exist
+        failed(error.to_string())
+    })
 }
 
 fn vtk(world: &World) -> Result<Vtk> {
@@ -48,6 +54,11 @@ fn vtk(world: &World) -> Result<Vtk> {
             let slice = world.field_data(body, &name)?;
             // vectors of a plane become vectors of space, for ParaView
             let components = if slice.components == dimension { 3 } else { slice.components };
+            // state variables of different models may share a name but not a shape
+            let name = match arrays.get(&name) {
+                Some((width, _)) if *width != components => format!("{name}_{components}"),
+                _ => name,
+            };
             let array = arrays.entry(name).or_insert((components, Vec::new()));
             array.1.resize(count * components, f64::NAN);
             for k in 0..n {

@@ -10,6 +10,8 @@ pub mod seeding;
 pub use chunk::{CHUNK, ChunkMut, for_each_chunk};
 pub use fields::{FieldInfo, Layout};
 
+use crate::error::{Error, Result, Status};
+
 const ALIGN: usize = 64;
 const LANES: usize = 8;
 
@@ -22,11 +24,14 @@ pub struct Aligned {
 }
 
 impl Aligned {
-    /// A zeroed buffer of `len` doubles.
-    pub fn zeroed(len: usize) -> Self {
-        let memory = vec![0.0; len + ALIGN / size_of::<f64>()];
+    /// A zeroed buffer of `len` doubles, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
+    pub fn zeroed(len: usize) -> Result<Self> {
+        let mut memory = Vec::new();
+        let all = len + ALIGN / size_of::<f64>();
+        reserve(&mut memory, all, "the columns of particles")?;
+        memory.resize(all, 0.0);
         let start = memory.as_ptr().align_offset(ALIGN);
-        Self { memory, start, len }
+        Ok(Self { memory, start, len })
     }
 
     /// The doubles.
@@ -38,6 +43,17 @@ impl Aligned {
     pub fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.memory[self.start..self.start + self.len]
     }
+}
+
+/// Makes room for `more` elements, or says that there is none.
+pub fn reserve<T>(list: &mut Vec<T>, more: usize, what: &str) -> Result<()> {
+    list.try_reserve(more).map_err(|_| {
+        let gigabytes = more as f64 * size_of::<T>() as f64 * 1e-9;
+        Error::new(
+            Status::OutOfMemory,
+            format!("{what} need {gigabytes:.1} GB, which the system does not give: use a larger spacing or fewer particles"),
+        )
+    })
 }
 
 /// Rounds a number of points up to whole groups of 8.
@@ -59,15 +75,18 @@ pub struct Particles {
 
 impl Particles {
     /// `count` particles with all columns zero and ids 0, 1, ...
-    pub fn new(layout: Layout, count: usize) -> Self {
+    pub fn new(layout: Layout, count: usize) -> Result<Self> {
         let stride = padded(count);
-        Self {
-            data: Aligned::zeroed(stride * layout.components()),
-            scratch: Aligned::zeroed(stride),
-            id: (0..count as i64).collect(),
+        let mut id = Vec::new();
+        reserve(&mut id, count, "the ids of particles")?;
+        id.extend(0..count as i64);
+        Ok(Self {
+            data: Aligned::zeroed(stride * layout.components())?,
+            scratch: Aligned::zeroed(stride)?,
+            id,
             layout,
             stride,
-        }
+        })
     }
 
     /// Number of particles.

@@ -1,5 +1,6 @@
 //! Bodies from shapes: particles on a regular lattice.
 
+use super::reserve;
 use crate::error::{Error, Result};
 
 /// A region to fill with particles. In two dimensions z is ignored, bodies are 1 m thick and a sphere is a disc.
@@ -95,6 +96,7 @@ pub fn fill<const D: usize>(
         )));
     }
     let mut points = Vec::new();
+    reserve(&mut points, all as usize, "the points of a region")?;
     for flat in 0..count.iter().product::<i64>() {
         let mut rest = flat;
         let mut point = from;
@@ -139,8 +141,11 @@ fn bounds<const D: usize>(region: &Region) -> Result<([f64; D], [f64; D])> {
                 let n = vertices.len();
                 return Err(Error::invalid(format!("a polygon needs 3 corners or more, got {n}")));
             }
+            if let Some(v) = vertices.iter().find(|v| !(v[0].is_finite() && v[1].is_finite())) {
+                return Err(Error::invalid(format!("corners must be finite [m], got {v:?}")));
+            }
             let fold = |d: usize, start, f: fn(f64, f64) -> f64| {
-                vertices.iter().fold(start, |m, v| if v[d].is_nan() { v[d] } else { f(m, v[d]) })
+                vertices.iter().fold(start, |m, v| f(m, v[d]))
             };
             (
                 std::array::from_fn(|d| fold(d, f64::INFINITY, f64::min)),
@@ -148,15 +153,32 @@ fn bounds<const D: usize>(region: &Region) -> Result<([f64; D], [f64; D])> {
             )
         }
     };
+    if let Region::Polygon { vertices } = region {
+        let (area, extent) = (area(vertices), (max[0] - min[0]) * (max[1] - min[1]));
+        if !(area > 1e-9 * extent) {
+            return Err(Error::invalid(format!(
+                "the corners of the polygon must enclose an area, got {area:e} m^2: give them in order round the shape"
+            )));
+        }
+    }
     for d in 0..D {
         if !(min[d].is_finite() && max[d].is_finite() && min[d] < max[d]) {
             let (axis, low, high) = (["x", "y", "z"][d], min[d], max[d]);
             return Err(Error::invalid(format!(
-                "the region must have a finite, positive extent; along {axis} it goes from {low} to {high}"
+                "the region must have a finite, positive extent; along {axis} it goes from {low:e} to {high:e}"
             )));
         }
     }
     Ok((min, max))
+}
+
+/// Area inside a polygon [m²]; what is run round in opposite senses cancels.
+fn area(vertices: &[[f64; 2]]) -> f64 {
+    let last = vertices[vertices.len() - 1];
+    let twice = vertices.iter().fold((last, 0.0), |(a, sum), b| {
+        (*b, sum + (a[0] - last[0]) * (b[1] - last[1]) - (b[0] - last[0]) * (a[1] - last[1]))
+    });
+    0.5 * f64::abs(twice.1)
 }
 
 fn contains<const D: usize>(region: &Region, x: &[f64; D]) -> bool {

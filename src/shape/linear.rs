@@ -12,7 +12,8 @@ impl ShapeFunction<2> for Linear {
     #[inline(always)]
     fn axis(xi: f64) -> Axis<2> {
         let first = floor(xi);
-        let f = xi - first;
+        // On a node plane the far node would have no mass and hence no velocity, but its slope would still count.
+        let f = (xi - first).clamp(f64::EPSILON, 1.0 - f64::EPSILON);
         Axis { first, fraction: f, w: [1.0 - f, f], dw: [-1.0, 1.0] }
     }
 }

@@ -13,8 +13,9 @@ use crate::grid::{EDGE, GridPolicy, Key, Run};
 use crate::shape::stencil::floor;
 use crate::world::state::{Body, Space, State};
 
-/// Largest distance from the origin, in cells, at which particles are accepted.
-pub const FARTHEST: f64 = 8e9;
+/// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther away a double is too coarse
+/// for the small moves of a step.
+pub const FARTHEST: f64 = 1e8;
 
 /// Buffers of the sort, kept from step to step.
 #[derive(Debug, Default)]
@@ -75,17 +76,19 @@ fn nobody_moved<const D: usize>(world: &State<D>) -> bool {
 
 fn regroup<const D: usize>(world: &mut State<D>) -> Result<()> {
     let mut sorting = std::mem::take(&mut world.sorting);
-    let result = number_blocks(world, &mut sorting);
-    if result.is_ok() {
+    let result = number_blocks(world, &mut sorting).and_then(|()| {
         rank_owners(&mut sorting);
         match world.options.grid_policy {
-            GridPolicy::Static => world.grid.set_blocks(&world.static_blocks, false),
-            policy => world.grid.set_blocks(&sorting.owners, policy == GridPolicy::GrowOnly),
+            GridPolicy::Static if world.grid.keys().is_empty() => {
+                world.grid.set_blocks(&world.static_blocks, false)?;
+            }
+            GridPolicy::Static => world.grid.no_change(),
+            policy => world.grid.set_blocks(&sorting.owners, policy == GridPolicy::GrowOnly)?,
         }
         sort_bodies(world, &mut sorting);
         let runs = world.bodies.iter().flat_map(|body| body.runs.iter().copied());
-        world.tiles.assign(runs, world.grid.keys().len(), D);
-    }
+        world.tiles.assign(runs, world.grid.keys().len(), D)
+    });
     world.sorting = sorting;
     result
 }
@@ -124,7 +127,7 @@ fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D])
         GridPolicy::Static => {
             "the box of the static grid (use a larger box or grid_policy dynamic)"
         }
-        _ => "8e9 cells around the origin of the grid (check velocities and spacing)",
+        _ => "1e8 cells around the origin of the grid (check velocities and spacing)",
     };
     Error::new(
         Status::OutsideGrid,
@@ -143,6 +146,7 @@ fn rank_owners<const D: usize>(sorting: &mut Sorting<D>) {
     }
 }
 
+/// Sorts each body by block and cell. Particles of one cell keep their order.
 fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) {
     let cells = block_nodes(D) as u32;
     let mut first = 0;
@@ -150,35 +154,49 @@ fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) {
         let n = body.particles.len();
         let slots = &mut sorting.slot[first..first + n];
         first += n;
-        let count = &mut sorting.count;
-        count.clear();
-        count.resize(sorting.owners.len() * cells as usize + 1, 0);
         for slot in slots.iter_mut() {
             *slot = sorting.rank[(*slot / cells) as usize] * cells + *slot % cells;
-            count[*slot as usize + 1] += 1;
         }
-        for s in 1..count.len() {
-            count[s] += count[s - 1];
+        let slots = &*slots;
+        let all = sorting.owners.len() * cells as usize;
+        let order = &mut sorting.order;
+        order.clear();
+        if n < all / 8 {
+            // a small body in a large grid: counting would cost the whole grid
+            order.extend(0..n as u32);
+            order.sort_unstable_by_key(|k| (slots[*k as usize], *k));
+        } else {
+            order.resize(n, 0);
+            counting_sort(slots, all, &mut sorting.count, order);
         }
         body.runs.clear();
-        for (o, key) in sorting.owners.iter().enumerate() {
-            let (from, to) = (count[o * cells as usize], count[(o + 1) * cells as usize]);
-            if from < to {
-                let block = world.grid.find(key).expect("owners are active blocks");
-                body.runs.push(Run { block, body: b as u32, first: from, end: to });
-            }
+        let rank = |k: &u32| slots[*k as usize] / cells;
+        for run in order.chunk_by(|a, b| rank(a) == rank(b)) {
+            let first = body.runs.last().map_or(0, |r| r.end);
+            let key = sorting.owners[rank(&run[0]) as usize];
+            let block = world.grid.find(&key).expect("owners are active blocks");
+            let end = first + run.len() as u32;
+            body.runs.push(Run { block, body: b as u32, first, end });
         }
-        sorting.order.clear();
-        sorting.order.resize(n, 0);
-        let mut sorted = true;
-        for (k, slot) in slots.iter().enumerate() {
-            let to = &mut count[*slot as usize];
-            sorted &= *to as usize == k;
-            sorting.order[*to as usize] = k as u32;
-            *to += 1;
+        if !order.is_sorted() {
+            body.particles.permute(order);
         }
-        if !sorted {
-            body.particles.permute(&sorting.order);
-        }
+    }
+}
+
+/// The stable order of `slots`, whose values are below `values`.
+fn counting_sort(slots: &[u32], values: usize, count: &mut Vec<u32>, order: &mut [u32]) {
+    count.clear();
+    count.resize(values + 1, 0);
+    for slot in slots {
+        count[*slot as usize + 1] += 1;
+    }
+    for s in 1..count.len() {
+        count[s] += count[s - 1];
+    }
+    for (k, slot) in slots.iter().enumerate() {
+        let to = &mut count[*slot as usize];
+        order[*to as usize] = k as u32;
+        *to += 1;
     }
 }

@@ -1,12 +1,14 @@
 //! Stage 0: how far may we go?
 //!
-//! dt = CFL · min(h / max(c + |v|), h² / (2 D ν)) with the wave speed c and the kinematic diffusivity ν of the materials, after
-//! R. Courant, K. Friedrichs, H. Lewy, Math. Ann. 100 (1928) 32–74. Each stress update leaves the limits of the next step; after the
-//! host changed particles they are asked of the materials anew.
+//! The largest dt with (c + |v| + |g| dt) dt ≤ CFL h and dt ≤ CFL h² / (2 D ν), with the wave speed c and the kinematic diffusivity ν
+//! of the materials, after R. Courant, K. Friedrichs, H. Lewy, Math. Ann. 100 (1928) 32–74; the term with gravity g keeps what is at
+//! rest and carries no wave from falling through a wall in one step. Each stress update leaves the limits of the next step; after
+//! the host changed particles they are asked of the materials anew.
 
 use crate::error::{Error, Result};
 use crate::material::StressBatch;
 use crate::particles::CHUNK;
+use crate::world::options::Options;
 use crate::world::scratch::with_scratch;
 use crate::world::state::{Body, State};
 
@@ -37,11 +39,13 @@ impl Limits {
         }
     }
 
-    /// The stable time step [s]; infinity if nothing moves and nothing resists.
-    pub fn stable_dt(&self, cfl: f64, spacing: f64, dimension: usize) -> f64 {
-        let wave = spacing / self.speed;
-        let viscous = spacing * spacing / (2.0 * dimension as f64 * self.diffusivity);
-        (cfl * wave.min(viscous)).min(self.wanted_dt)
+    /// The stable time step [s]; infinity if nothing moves, pulls or resists.
+    pub fn stable_dt(&self, options: &Options) -> f64 {
+        let (h, s) = (options.spacing, self.speed);
+        let g = options.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let wave = 2.0 * options.cfl * h / (s + (s * s + 4.0 * g * options.cfl * h).sqrt());
+        let viscous = options.cfl * h * h / (2.0 * options.dimension as f64 * self.diffusivity);
+        wave.min(viscous).min(self.wanted_dt)
     }
 }
 
@@ -91,15 +95,26 @@ fn limits_of_chunk<const D: usize>(
             if !speed.is_finite() {
                 let id = particles.id[first + k];
                 return Err(Error::invalid(format!(
-                    "the wave speed of particle {id} of body {} is {speed}; check its stress, state and parameters",
+                    "the wave speed of particle {id} of body {} is {speed}; check its velocity, stress, state and parameters",
                     body.id
                 )));
             }
             limits.speed = limits.speed.max(speed);
             if let Some(nu) = s.diffusivity.get(k) {
-                limits.diffusivity = limits.diffusivity.max(*nu);
+                limits.diffusivity = larger(limits.diffusivity, *nu);
             }
+        }
+        if limits.diffusivity.is_nan() {
+            return Err(Error::invalid(format!(
+                "the model `{}` gives a diffusivity that is not a number",
+                body.material.model().name
+            )));
         }
         Ok(limits)
     })
+}
+
+/// The larger of two numbers, not a number if one of them is.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
 }

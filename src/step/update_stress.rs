@@ -6,7 +6,7 @@ use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP};
 
 use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
-use crate::step::time_step::Limits;
+use crate::step::time_step::{Limits, larger};
 use crate::world::state::Piece;
 
 /// What the stress updates of a step lead to.
@@ -98,14 +98,14 @@ fn commit<const D: usize>(piece: &mut Piece<'_, '_, D>) {
     }
 }
 
-/// Largest c + |v|; not a number or infinite if any particle's stress, velocity, volume or wave speed is.
+/// Largest c + |v|; not a number or infinite if anything of any particle is, or if a wave speed is negative.
 fn limits_of_chunk<const D: usize>(piece: &Piece<'_, '_, D>) -> Limits {
     let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
     let mut limits = Limits::default();
     for k in 0..chunk.len {
         limits.speed = larger(limits.speed, magnitude(piece, k));
     }
-    for c in layout.state..layout.components() {
+    for c in layout.strain_energy..layout.components() {
         let worst = chunk.column(c).iter().fold(0.0, |m, v| larger(m, 0.0 * v));
         limits.speed += worst;
     }
@@ -119,23 +119,27 @@ fn magnitude<const D: usize>(piece: &Piece<'_, '_, D>, k: usize) -> f64 {
     let x = chunk.get::<D>(layout.position, k);
     let stress = chunk.get::<6>(layout.stress, k);
     let [volume] = chunk.get::<1>(layout.volume, k);
-    let zero = 0.0 * (stress.iter().sum::<f64>() + x.iter().sum::<f64>() + volume);
-    piece.scratch.wave_speed[k] + v.iter().map(|c| c * c).sum::<f64>().sqrt() + zero
-}
-
-/// The larger of two numbers, not a number if one of them is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a >= b || a.is_nan() { a } else { b }
+    let s = &piece.scratch;
+    let given = |output: &[f64]| output.get(k).map_or(0.0, |value| value.abs());
+    let rest = given(s.diffusivity) + given(s.dt_factor) + volume;
+    let zero = 0.0 * (stress.iter().sum::<f64>() + x.iter().sum::<f64>() + rest);
+    let c = if s.wave_speed[k] >= 0.0 { s.wave_speed[k] } else { f64::NAN };
+    c + v.iter().map(|c| c * c).sum::<f64>().sqrt() + zero
 }
 
 fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>) -> Error {
     let layout = piece.chunk.layout;
     let bad = |k: &usize| {
         let state = |c| !piece.chunk.column(c)[*k].is_finite();
-        !magnitude(piece, *k).is_finite() || (layout.state..layout.components()).any(state)
+        !magnitude(piece, *k).is_finite() || (layout.strain_energy..layout.components()).any(state)
     };
     let k = (0..piece.chunk.len).find(bad).unwrap_or(0);
-    fault(piece, k, Status::NonFinite, "gave a value that is not finite, or took one,")
+    fault(
+        piece,
+        k,
+        Status::NonFinite,
+        "gave or took a value that is not finite, or gave a negative wave speed,",
+    )
 }
 
 fn fault<const D: usize>(piece: &Piece<'_, '_, D>, k: usize, status: Status, what: &str) -> Error {

@@ -37,7 +37,7 @@ impl<const D: usize> State<D> {
         let gradient = material.model().kinematics == Kinematics::DeformationGradient;
         let affine = self.options.transfer == TransferKind::Apic;
         let state = material.model().state_components();
-        let mut particles = Particles::new(Layout::new(D, affine, gradient, state), n);
+        let mut particles = Particles::new(Layout::new(D, affine, gradient, state), n)?;
         let layout = particles.layout;
         copy(&mut particles, layout.position, &arrays.position, "position", D)?;
         copy(&mut particles, layout.volume, &arrays.volume, "volume", 1)?;
@@ -138,10 +138,14 @@ impl<const D: usize> State<D> {
         let space = self.space();
         for k in 0..particles.len() {
             let x = particles.get::<D>(layout.position, k);
-            let far = space.to_units(x).iter().any(|xi| !(xi.abs() < FARTHEST));
+            let near = |d: usize| {
+                let in_cells = (x[d] / space.spacing).abs().max(space.to_units(x)[d].abs());
+                in_cells < FARTHEST
+            };
+            let far = !(0..D).all(near);
             if far || !self.inside_box(&x) {
                 let text = format!(
-                    "particle {} at {x:?} is outside the grid (8e9 cells around its origin, or the box of a static grid)",
+                    "particle {} at {x:?} is outside the grid (1e8 cells around its origin and that of space, or the box of a static grid)",
                     particles.id[k]
                 );
                 return Err(Error::invalid(text).at(place(k)));

@@ -271,6 +271,12 @@ impl World {
     }
 
     fn commit(&mut self, dt: f64) -> Result<()> {
+        if self.time() + dt == self.time() {
+            return Err(Error::invalid(format!(
+                "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing",
+                self.time()
+            )));
+        }
         let result = on!(&mut self, s => {
             let place = s.place();
             let result = if s.parallel {
@@ -305,8 +311,7 @@ impl World {
                 Some(limits) => limits,
                 None => limits_of_state(s)?,
             };
-            let o = &s.options;
-            Ok(limits.stable_dt(o.cfl, o.spacing, o.dimension))
+            Ok(limits.stable_dt(&s.options))
         })
     }
 

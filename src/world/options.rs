@@ -76,9 +76,9 @@ impl Options {
                 self.spacing
             )));
         }
-        if !self.origin.iter().all(|x| x.is_finite()) {
+        if !self.origin.iter().all(|x| (x / self.spacing).abs() < FARTHEST) {
             return Err(Error::invalid(format!(
-                "origin must be finite [m], got {:?}",
+                "origin must be finite and within 1e8 cells of x = 0 [m], got {:?}",
                 self.origin
             )));
         }
@@ -103,7 +103,7 @@ impl Options {
             let far = |x: f64| !(((x - self.origin[d]) / self.spacing).abs() < FARTHEST);
             if far(min) || far(max) || min >= max {
                 return Err(Error::invalid(format!(
-                    "a static grid needs box_min < box_max, finite and within 8e9 cells of the origin; \
+                    "a static grid needs box_min < box_max, finite and within 1e8 cells of the origin; \
                      along {} they are {min} and {max}",
                     ["x", "y", "z"][d]
                 )));

@@ -139,7 +139,8 @@ pub fn with_scratch_and_tile<R>(
     BUFFERS.with_borrow_mut(|buffers| {
         let needed = sizes.iter().sum::<usize>() * stride;
         if buffers.doubles.as_slice().len() < needed {
-            buffers.doubles = Aligned::zeroed(needed.max(64 * CHUNK));
+            let room = Aligned::zeroed(needed.max(64 * CHUNK));
+            buffers.doubles = room.expect("scratch of a chunk is small");
         }
         if buffers.status.len() < stride {
             buffers.status.resize(stride.max(CHUNK), 0);

@@ -3,6 +3,9 @@
 #include "check.h"
 
 #include <pthread.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static lahar_context *context;
 static lahar_material *material;
@@ -92,6 +95,7 @@ static void bad_numbers(void) {
     refuse_particle(bad[i], 2, "mass");
     if (i < 3) refuse_particle(bad[i], 3, "velocity");
     if (i < 3) refuse_particle(bad[i], 4, "stress");
+    if (i == 0) refuse_particle(2e7, 0, "outside the grid"); /* 2e8 cells */
     OK(lahar_world_options_init(&options, sizeof options));
     options.spacing = bad[i];
     made = world;
@@ -121,6 +125,157 @@ static void bad_numbers(void) {
   OK(lahar_wall_init(&wall, sizeof wall));
   wall.friction = -0.1;
   REFUSED(world, lahar_wall_add(world, &wall, &id), LAHAR_ERROR_INVALID_ARGUMENT, "friction");
+}
+
+static void bad_polygons(void) {
+  const double unknown_first[] = {NAN, 0, 1, 0, 0, 1}, unknown_last[] = {0, 0, 1, 0, 0, NAN}, endless[] = {0, 0, INFINITY, 0, 0, 1};
+  const double in_a_line[] = {0, 0, 1, 1, 2, 2}, there_and_back[] = {0, 0, 1, 0, 1, 1, 1, 0}, few[] = {0, 0, 1, 1};
+  const struct {
+    const double *vertices;
+    int64_t count;
+    const char *part;
+  } bad[] = {{unknown_first, 3, "must be finite"}, {unknown_last, 3, "must be finite"}, {endless, 3, "must be finite"},
+             {in_a_line, 3, "enclose an area"},    {there_and_back, 4, "enclose an area"}, {few, 2, "3 corners"},
+             {in_a_line, -1, "`count` is -1"}};
+  lahar_fill fill;
+  int64_t id = 77;
+  size_t i;
+  OK(lahar_fill_init(&fill, sizeof fill));
+  fill.density = 1000;
+  for (i = 0; i < sizeof bad / sizeof *bad; ++i)
+    REFUSED(world, lahar_body_add_polygon(world, material, bad[i].count, bad[i].vertices, &fill, &id), LAHAR_ERROR_INVALID_ARGUMENT,
+            bad[i].part);
+  CHECK(id == 77);
+}
+
+/* A small block with a velocity along x. */
+static int64_t add_projectile(lahar_world *flight, double velocity) {
+  const double min[3] = {0.4, 0.4, 0}, max[3] = {0.6, 0.6, 0};
+  lahar_fill fill;
+  int64_t body = -1;
+  OK(lahar_fill_init(&fill, sizeof fill));
+  fill.density = 1000;
+  fill.velocity[0] = velocity;
+  OK(lahar_body_add_box(flight, material, min, max, &fill, &body));
+  return body;
+}
+
+static lahar_world *make_static_world(void) {
+  lahar_world_options options;
+  lahar_world *made = NULL;
+  OK(lahar_world_options_init(&options, sizeof options));
+  options.dimension = 2;
+  options.spacing = 0.1;
+  options.grid_policy = LAHAR_GRID_STATIC;
+  options.box_max[0] = options.box_max[1] = 1;
+  OK(lahar_world_create(context, &options, &made));
+  return made;
+}
+
+/* The world waits until the host has brought the particles back or taken the body away. */
+static void out_of_a_static_box(void) {
+  lahar_world *box = make_static_world();
+  int64_t body = add_projectile(box, 5), steps = 0, n = 0;
+  lahar_error_info info = {0};
+  double position[2 * 64] = {0}, time = 0;
+  OK(lahar_body_particle_count(box, body, &n));
+  CHECK(n == 16);
+  OK(lahar_body_read(box, body, "position", n, position, 0, 0));
+  EXPECT(lahar_world_advance(box, 1.0, INT64_MAX, &steps, &time), LAHAR_ERROR_OUTSIDE_GRID, "box");
+  CHECK(steps > 0 && time > 0.05 && time < 0.1);
+  info.struct_size = sizeof info;
+  OK(lahar_last_error_info(&info));
+  CHECK(info.body == body && info.particle >= 0 && info.particle < n);
+  REFUSED(box, lahar_world_step_auto(box, NULL), LAHAR_ERROR_OUTSIDE_GRID, "box");
+  REFUSED(box, lahar_world_step(box, 1e-6), LAHAR_ERROR_OUTSIDE_GRID, "box");
+  OK(lahar_body_write(box, body, "position", n, position, 0, 0));
+  OK(lahar_world_step_auto(box, NULL));
+  EXPECT(lahar_world_advance(box, 1.0, INT64_MAX, NULL, NULL), LAHAR_ERROR_OUTSIDE_GRID, "box");
+  OK(lahar_body_remove(box, body));
+  OK(lahar_world_advance(box, 1.0, INT64_MAX, NULL, &time));
+  CHECK(time == 1);
+  lahar_world_free(box);
+}
+
+static void positions_that_the_host_wrote(void) {
+  const double bad[] = {1e300, -2e7};
+  lahar_world *flight = make_world(context);
+  int64_t body = add_projectile(flight, 0);
+  double position[2 * 16] = {0}, kept;
+  size_t i;
+  OK(lahar_body_read(flight, body, "position", 16, position, 0, 0));
+  kept = position[5];
+  position[5] = NAN;
+  REFUSED(flight, lahar_body_write(flight, body, "position", 16, position, 0, 0), LAHAR_ERROR_INVALID_ARGUMENT, "must be finite");
+  for (i = 0; i < sizeof bad / sizeof *bad; ++i) {
+    position[5] = bad[i];
+    OK(lahar_body_write(flight, body, "position", 16, position, 0, 0));
+    REFUSED(flight, lahar_world_step_auto(flight, NULL), LAHAR_ERROR_NON_FINITE_INPUT, "outside the grid");
+    REFUSED(flight, lahar_world_advance(flight, 1.0, 5, NULL, NULL), LAHAR_ERROR_NON_FINITE_INPUT, "outside the grid");
+  }
+  position[5] = kept;
+  OK(lahar_body_write(flight, body, "position", 16, position, 0, 0));
+  OK(lahar_world_step_auto(flight, NULL));
+  lahar_world_free(flight);
+}
+
+/* A stable step that is lost in the time of the world must not be taken for ever. */
+static void time_that_stands_still(void) {
+  lahar_world *fast = make_world(context);
+  int64_t steps = -1;
+  double time = 0, dt = -1;
+  OK(lahar_world_advance(fast, 1.0, INT64_MAX, NULL, NULL));
+  add_projectile(fast, 1e20);
+  REFUSED(fast, lahar_world_advance(fast, 2.0, INT64_MAX, &steps, &time), LAHAR_ERROR_INVALID_ARGUMENT, "does not change the time");
+  CHECK(steps == 0 && time == 1);
+  REFUSED(fast, lahar_world_step_auto(fast, &dt), LAHAR_ERROR_INVALID_ARGUMENT, "does not change the time");
+  CHECK(dt == -1);
+  lahar_world_free(fast);
+}
+
+/* Bodies from 4e4 to 4e8 particles, where 256 MB can be had. */
+static int bodies_larger_than_memory(void) {
+  struct rlimit limit;
+  FILE *file = fopen("/proc/self/statm", "r");
+  unsigned long pages = 0;
+  lahar_fill fill;
+  lahar_status status = LAHAR_OK;
+  int fitting = 0, refused = 0;
+  double side;
+  if (!file || fscanf(file, "%lu", &pages) != 1) return 2;
+  fclose(file);
+  OK(lahar_fill_init(&fill, sizeof fill));
+  fill.density = 1000;
+  limit.rlim_cur = limit.rlim_max = pages * (rlim_t)sysconf(_SC_PAGESIZE) + ((rlim_t)256 << 20);
+  if (setrlimit(RLIMIT_AS, &limit)) return 2;
+  for (side = 10; side < 1000; side *= 1.2) {
+    const double min[3] = {0, 0, 0}, max[3] = {side, side, 0};
+    picture before = take_picture(world), after;
+    int64_t id = -1;
+    status = lahar_body_add_box(world, material, min, max, &fill, &id);
+    if (status == LAHAR_OK) {
+      ++fitting;
+      OK(lahar_body_remove(world, id));
+    } else {
+      ++refused;
+      EXPECT(status, LAHAR_ERROR_OUT_OF_MEMORY, "GB");
+      CHECK(id == -1);
+    }
+    after = take_picture(world);
+    CHECK(memcmp(&before, &after, sizeof before) == 0);
+  }
+  CHECK(fitting > 0 && refused > 5 && status == LAHAR_ERROR_OUT_OF_MEMORY);
+  return failures != 0;
+}
+
+/* In a child, which may end in any way without harm to the other tests. */
+static void more_than_memory(void) {
+  int status = -1;
+  pid_t child = fork();
+  CHECK(child >= 0);
+  if (child == 0) _exit(bodies_larger_than_memory());
+  CHECK(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 static void bad_choices_and_counts(void) {
@@ -177,6 +332,9 @@ static void bad_choices_and_counts(void) {
   particles.position.point_stride = 2;
   particles.reserved = 1;
   REFUSED(world, lahar_body_add_particles(world, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "`reserved`");
+  REFUSED(world, lahar_world_write_vtp(world, ""), LAHAR_ERROR_INVALID_ARGUMENT, "`path` is empty");
+  REFUSED(world, lahar_world_write_vtp(world, "particles.vtk"), LAHAR_ERROR_INVALID_ARGUMENT, ".vtp");
+  REFUSED(world, lahar_world_write_vtp(world, "/no/such/folder/particles.vtp"), LAHAR_ERROR_FILE, "/no/such/folder");
   EXPECT(lahar_context_load_plugin(context, "\xff\xfe/", NULL), LAHAR_ERROR_INVALID_ARGUMENT, "`name_or_path` is not UTF-8");
 }
 
@@ -372,11 +530,16 @@ int main(int argc, char **argv) {
   OK(lahar_world_step_auto(world, NULL));
   wrong_struct_size();
   bad_numbers();
+  bad_polygons();
   bad_choices_and_counts();
   unknown_names_and_parameters();
   bad_plugin_files(argv[4], argv[5]);
   step_larger_than_stable();
   views();
+  out_of_a_static_box();
+  positions_that_the_host_wrote();
+  time_that_stands_still();
+  more_than_memory();
   material_that_goes_wrong("nan_model", LAHAR_ERROR_NON_FINITE);
   material_that_goes_wrong("failing_model", LAHAR_ERROR_MATERIAL_FAILED);
   two_threads_step_one_world();

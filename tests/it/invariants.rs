@@ -1,5 +1,6 @@
 //! What a step must keep: mass, momentum, angular momentum, the stress of a rigid rotation; and what must lose it.
 
+use lahar::boundary::{Wall, WallKind};
 use lahar::material::Material;
 use lahar::particles::seeding::Region;
 use lahar::shape::ShapeKind;
@@ -140,4 +141,48 @@ fn a_rigid_quarter_turn_turns_the_stress_and_does_nothing_else() {
         assert!(defect <= 1e-10, "{dimension}D: {defect:e}");
         assert!(spin_defect(dimension, false) > 0.1, "a model without rotation must fail");
     }
+}
+
+#[test]
+fn a_lattice_on_the_nodes_moves_rigidly_without_stress() {
+    for shape in [ShapeKind::Linear, ShapeKind::QuadraticBspline] {
+        for (order, transfer) in [
+            (StepOrder::Usl, TransferKind::PicFlip),
+            (StepOrder::Musl, TransferKind::PicFlip),
+            (StepOrder::Musl, TransferKind::Apic),
+        ] {
+            let context = context(1);
+            let material = elastic(&context, 1e6, 0.3);
+            let options = Options {
+                dimension: 2,
+                spacing: 1.0,
+                shape,
+                order,
+                transfer,
+                ..Options::default()
+            };
+            let mut world = world(&context, &options);
+            let at = |n: usize| 0.5 * n as f64 - 1e-17;
+            let x: Vec<f64> = (0..25).flat_map(|n| [at(n / 5), at(n % 5)]).collect();
+            let body = add_points(&mut world, &material, (&x, &[1.0, -0.5].repeat(25)), 0.25, 1e3);
+            world.step(None).expect("a step");
+            let stress = read(&world, body, "stress").iter().fold(0.0, |m, s| f64::max(m, s.abs()));
+            assert!(stress <= 1e-7, "{shape:?} {order:?} {transfer:?}: {stress:e} Pa");
+        }
+    }
+}
+
+#[test]
+fn what_rests_and_carries_no_wave_falls_onto_a_wall_and_not_through_it() {
+    let context = context(1);
+    let material = elastic(&context, 1e-6, 0.3);
+    let gravity = [0.0, -9.81, 0.0];
+    let options = Options { dimension: 2, spacing: 0.1, gravity, ..Options::default() };
+    let mut world = world(&context, &options);
+    let (kind, position) = (WallKind::Sticky, -0.95);
+    world.add_wall(&Wall { axis: 1, side: 1, position, kind, friction: 0.0 }).expect("a wall");
+    fill(&mut world, &material, &a_box([0.0; 3], [1.0, 1.0, 0.0]), 1000.0, [0.0; 3]);
+    world.advance(0.5, 10_000).1.expect("a fall");
+    let lowest = read(&world, 0, "position").chunks(2).fold(f64::INFINITY, |m, x| m.min(x[1]));
+    assert!(lowest > position, "{lowest} is behind the wall at {position}");
 }

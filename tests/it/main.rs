@@ -9,6 +9,7 @@ mod bad_input;
 mod bar;
 mod determinism;
 mod discs;
+mod examples;
 mod fortran;
 mod header;
 mod host;

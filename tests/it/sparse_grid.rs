@@ -26,7 +26,7 @@ fn bounce(policy: GridPolicy) -> World {
         gravity: [0.0, -9.81, 0.0],
         grid_policy: policy,
         box_min: [-3.0, -3.0, 0.0],
-        box_max: [3.0, 3.0, 0.0],
+        box_max: [3.0, 9.0, 0.0],
         ..Options::default()
     };
     let mut world = world(&context, &options);
