@@ -11,7 +11,7 @@
  *   cells=...     cells along d0 (default 40, a multiple of 2)
  *   steps=...     at most so many steps of each column (default: until 5 sqrt(h0/g))
  *   frames=...    a folder that exists, or just its name: gets the last column as six files
- *   transfer=apic instead of FLIP with a little PIC
+ *   transfer=apic instead of FLIP with a little PIC: runs farther, 99 % of the sand by 5, 22 and 27 % for a = 0.5, 1, 2
  *   cone=compression   negative control: too strong a cone in plane strain, falls short
  *   friction=0.3       negative control: a floor with this coefficient of friction, runs too far
  */
@@ -76,7 +76,7 @@ static void make_world(lahar_context *context, const settings *s, column *c) {
     check(lahar_world_options_init(&options, sizeof options));
     options.dimension = 2;
     options.spacing = c->h;
-    /* walls of quadratic shapes stand half a cell from a node: then no free node reaches behind them */
+    /* Nodes stand half a cell to either side of the sand's edges: the last nodes that the walls hold are those just outside. */
     options.origin[0] = options.origin[1] = 0.5 * c->h;
     options.gravity[1] = -gravity;
     options.transfer = s->apic ? LAHAR_TRANSFER_APIC : LAHAR_TRANSFER_PIC_FLIP;
@@ -85,6 +85,7 @@ static void make_world(lahar_context *context, const settings *s, column *c) {
 
     lahar_wall wall;
     check(lahar_wall_init(&wall, sizeof wall));
+    wall.position = -c->h; /* a wall of quadratic shapes holds nodes up to h / 2 in front of it */
     wall.axis = 0;
     wall.kind = LAHAR_WALL_SLIP;
     check(lahar_wall_add(c->world, &wall, NULL));
