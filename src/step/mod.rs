@@ -84,8 +84,9 @@ fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     })
 }
 
-/// Modified update stress last: the new particle velocities are mapped to the grid again, and the velocity gradient is taken of
-/// those. D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
+/// Modified update stress last: the new particle velocities, with their affine part, are mapped to the grid again, and the velocity
+/// gradient is taken of those. (Without the affine part the gradient would come of a field filtered twice and positions of one filtered
+/// once: sand would swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
 fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     particles_to_grid(world);
     world.hook(HookPoint::AfterScatter, dt);

@@ -1,13 +1,12 @@
 //! The step as the textbook writes it: the oracle of every fast kernel. No blocks, no tiles, no threads.
 
-use nalgebra::{SMatrix, SVector};
-use std::{array::from_fn, collections::HashMap};
-
 use crate::boundary::Wall;
 use crate::shape::ShapeKind;
 use crate::step::StepOrder;
 use crate::transfer::{TransferKind, pic_flip::pic_share};
 use crate::world::options::Options;
+use nalgebra::{SMatrix, SVector};
+use std::{array::from_fn, collections::HashMap};
 
 type Vector<const D: usize> = SVector<f64, D>;
 type Matrix<const D: usize> = SMatrix<f64, D, D>;
@@ -102,7 +101,8 @@ pub fn step<const D: usize>(
         }
         p.v = if affine { pic } else { (1.0 - share) * flip + share * pic };
         p.c = if affine { c } else { Matrix::zeros() };
-        near(o, p.x).for_each(|(i, w, ..)| grid.get_mut(&i).unwrap().last += w * p.mass * p.v);
+        let spread = |r: Vector<D>| p.mass * (p.v + p.c * r);
+        near(o, p.x).for_each(|(i, w, _, r)| grid.get_mut(&i).unwrap().last += w * spread(r));
     }
     for (i, n) in &mut grid {
         let again = walled(o, walls, i, n.last / n.m);

@@ -9,7 +9,7 @@ use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
 use crate::grid::{EDGE, Key, Lanes, NONE, Run, add_lanes};
 use crate::particles::Particles;
-use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::shape::stencil::{Row, ShapeFunction, Stencil};
 use crate::tensor::SYMMETRIC_INDEX;
 use crate::world::state::{Space, State};
 
@@ -24,7 +24,7 @@ pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
     pull::<D>(&grid.backward, tiles, 1, world.parallel, &mut grid.force);
 }
 
-/// Maps the new momentum of the particles, without their affine part, into R1 (second scatter of MUSL).
+/// Maps the new mass and momentum of the particles into R1 (second scatter of MUSL).
 pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, world.kernels.scatter_velocity);
     let (grid, tiles) = (&mut world.grid, &world.tiles);
@@ -112,6 +112,46 @@ pub fn corner<const N: usize, const D: usize>(
     })
 }
 
+/// What a particle spreads: mass and momentum at the lowest node of its stencil, and their change from node to node along each axis.
+struct Spread<const D: usize> {
+    lowest: Lanes,
+    slope: [Lanes; D],
+}
+
+impl<const D: usize> Spread<D> {
+    /// m (1, v + C r); without an affine matrix C = 0.
+    #[inline(always)]
+    fn new<const N: usize>(
+        particles: &Particles,
+        k: usize,
+        stencil: &Stencil<N, D>,
+        h: f64,
+    ) -> Self {
+        let layout = &particles.layout;
+        let [mass] = particles.get::<1>(layout.mass, k);
+        let v = particles.get::<D>(layout.velocity, k);
+        let mut spread = Self { lowest: lanes(mass, v.map(|c| mass * c)), slope: [[0.0; 4]; D] };
+        if layout.deformation_gradient > layout.affine {
+            for d in 0..D {
+                let c = |a: usize| particles.column(layout.affine + a * D + d)[k];
+                spread.slope[d] = lanes(0.0, std::array::from_fn::<f64, D, _>(|a| mass * h * c(a)));
+                add_lanes(&mut spread.lowest, -stencil.axes[d].fraction, &spread.slope[d]);
+            }
+        }
+        spread
+    }
+
+    /// Its value at the first node of a row.
+    #[inline(always)]
+    fn at(&self, row: &Row) -> Lanes {
+        let mut value = self.lowest;
+        for d in 0..D - 1 {
+            add_lanes(&mut value, row.node[d] as f64, &self.slope[d]);
+        }
+        value
+    }
+}
+
 /// Kernel: m (1, v + C r) into record 0 and −V σ ∇w into record 1.
 pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
     particles: &Particles,
@@ -122,52 +162,37 @@ pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
     tile: &mut [TileNode],
 ) {
     let layout = &particles.layout;
-    let affine = layout.deformation_gradient > layout.affine;
     for k in run.first as usize..run.end as usize {
         let xi = space.to_units(particles.get::<D>(layout.position, k));
         let stencil = Stencil::<N, D>::new::<S>(xi);
-        let [mass] = particles.get::<1>(layout.mass, k);
+        let spread = Spread::new(particles, k, &stencil, space.spacing);
         let [volume] = particles.get::<1>(layout.volume, k);
         let stress = particles.get::<6>(layout.stress, k);
-        let v = particles.get::<D>(layout.velocity, k);
-        // momentum at the lowest node, its change from node to node along each axis, and −V σ / h by columns
-        let mut lowest = lanes(mass, v.map(|c| mass * c));
-        let mut slope = [[0.0; 4]; D];
-        let mut flux = [[0.0; 4]; D];
-        for d in 0..D {
-            if affine {
-                let column: [f64; D] = std::array::from_fn(|a| {
-                    mass * space.spacing * particles.column(layout.affine + a * D + d)[k]
-                });
-                slope[d] = lanes(0.0, column);
-                add_lanes(&mut lowest, -stencil.axes[d].fraction, &slope[d]);
-            }
-            let scale = -volume / space.spacing;
-            flux[d] = lanes(
-                0.0,
-                std::array::from_fn::<f64, D, _>(|a| scale * stress[SYMMETRIC_INDEX[a][d]]),
-            );
-        }
+        // −V σ / h by columns
+        let scale = -volume / space.spacing;
+        let flux: [Lanes; D] = std::array::from_fn(|d| {
+            let column = |a: usize| scale * stress[SYMMETRIC_INDEX[a][d]];
+            lanes(0.0, std::array::from_fn::<f64, D, _>(column))
+        });
         let z = *stencil.last();
         let nodes = &mut tile[corner(&stencil, key, edge)..];
         stencil.rows(edge, |row| {
-            let mut momentum = lowest;
+            let mut momentum = spread.at(&row);
             let mut outer = [0.0; 4];
             for d in 0..D - 1 {
-                add_lanes(&mut momentum, row.node[d] as f64, &slope[d]);
                 add_lanes(&mut outer, row.dw[d], &flux[d]);
             }
             for (n, node) in nodes[row.offset..row.offset + N].iter_mut().enumerate() {
                 add_lanes(&mut node[0], row.w * z.w[n], &momentum);
                 add_lanes(&mut node[1], z.w[n], &outer);
                 add_lanes(&mut node[1], row.w * z.dw[n], &flux[D - 1]);
-                add_lanes(&mut momentum, 1.0, &slope[D - 1]);
+                add_lanes(&mut momentum, 1.0, &spread.slope[D - 1]);
             }
         });
     }
 }
 
-/// Kernel: m v into record 1.
+/// Kernel: m (1, v + C r) into record 1.
 pub fn scatter_velocity_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
     particles: &Particles,
     space: &Space<D>,
@@ -176,17 +201,17 @@ pub fn scatter_velocity_run<S: ShapeFunction<N>, const N: usize, const D: usize>
     edge: usize,
     tile: &mut [TileNode],
 ) {
-    let layout = &particles.layout;
     for k in run.first as usize..run.end as usize {
-        let xi = space.to_units(particles.get::<D>(layout.position, k));
+        let xi = space.to_units(particles.get::<D>(particles.layout.position, k));
         let stencil = Stencil::<N, D>::new::<S>(xi);
-        let [mass] = particles.get::<1>(layout.mass, k);
-        let momentum = lanes(0.0, particles.get::<D>(layout.velocity, k).map(|c| mass * c));
+        let spread = Spread::new(particles, k, &stencil, space.spacing);
         let z = *stencil.last();
         let nodes = &mut tile[corner(&stencil, key, edge)..];
         stencil.rows(edge, |row| {
+            let mut momentum = spread.at(&row);
             for (n, node) in nodes[row.offset..row.offset + N].iter_mut().enumerate() {
                 add_lanes(&mut node[1], row.w * z.w[n], &momentum);
+                add_lanes(&mut momentum, 1.0, &spread.slope[D - 1]);
             }
         });
     }
