@@ -11,7 +11,7 @@
  *   cells=...     cells along d0 (default 40, a multiple of 2)
  *   steps=...     at most so many steps of each column (default: until 5 sqrt(h0/g))
  *   frames=...    a folder that exists, or just its name: gets the last column as six files
- *   transfer=apic instead of FLIP with a little PIC: runs farther, 99 % of the sand by 5, 22 and 27 % for a = 0.5, 1, 2
+ *   transfer=apic instead of FLIP with a little PIC, runs farther
  *   cone=compression   negative control: too strong a cone in plane strain, falls short
  *   friction=0.3       negative control: a floor with this coefficient of friction, runs too far
  */
