@@ -90,8 +90,8 @@ extern "C" {
 // The time step exceeds the stable one; nothing was done.
 #define LAHAR_ERROR_STEP_TOO_LARGE 100
 
-// The host left a value in a particle field that is not finite, not positive where it must be, or a position too far away;
-// nothing was done.
+// The host left a value in a particle field that is not finite, not positive where it must be, or a position outside the
+// grid; nothing was done.
 #define LAHAR_ERROR_NON_FINITE_INPUT 101
 
 // A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
@@ -617,10 +617,10 @@ lahar_status lahar_world_set_damping(lahar_world *world, double damping);
 // One step of the given length.
 //
 // `dt`: [s], > 0 and not above lahar_world_stable_dt.
-// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is time
-// again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
-// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a
-// static grid or too far away; the world cannot step until the host writes positions back or removes the body),
+// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is
+// time again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
+// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of
+// a static grid or too far away; the world cannot step until the host writes positions back or removes the body),
 // LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
 // LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
@@ -656,8 +656,8 @@ lahar_status lahar_world_advance(lahar_world *world,
 
 // Longest step that is stable now [s]: infinity without particles.
 //
-// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not above
-// what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
+// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
+// above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
 // dimension, nu the kinematic viscosity.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
@@ -795,8 +795,8 @@ lahar_status lahar_body_add_sphere(lahar_world *world,
 // Adds a body that fills a simple polygon; two dimensions only.
 //
 // `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass` for
-// an exact one.
+// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass`
+// for an exact one.
 // `body`: gets the id of the new body; must not be NULL.
 // Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 // Thread: owner
@@ -1015,11 +1015,11 @@ void lahar_view_free(lahar_view *view);
 
 // A plane wall. Fill it with lahar_wall_init, then set what is wanted.
 //
-// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`: 0
-// for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
+// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`:
+// 0 for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
 // half-space. Place walls on node planes for linear shapes, and half a cell from node planes for quadratic ones (for
-// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up to
-// h late. Walls apply in the order in which they were added.
+// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up
+// to h late. Walls apply in the order in which they were added.
 typedef struct lahar_wall {
     // sizeof(lahar_wall); set by lahar_wall_init.
     uint32_t struct_size;
@@ -1214,8 +1214,8 @@ lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_to
 
 // Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 //
-// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is replaced
-// whole or not at all.
+// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is
+// replaced whole or not at all.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
 // LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 // Thread: callback-ok

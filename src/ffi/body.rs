@@ -264,8 +264,8 @@ pub unsafe extern "C" fn lahar_body_add_sphere(
 /// Adds a body that fills a simple polygon; two dimensions only.
 ///
 /// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass` for
-/// an exact one.
+/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass`
+/// for an exact one.
 /// `body`: gets the id of the new body; must not be NULL.
 /// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 /// Thread: owner

@@ -82,8 +82,8 @@ fn from_totals(totals: &Totals) -> lahar_totals {
 
 /// Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 ///
-/// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is replaced
-/// whole or not at all.
+/// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is
+/// replaced whole or not at all.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
 /// LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok

@@ -38,8 +38,8 @@ pub const LAHAR_ERROR_UNSUPPORTED: i32 = 12;
 pub const LAHAR_ERROR_BUFFER_TOO_SMALL: i32 = 13;
 /// The time step exceeds the stable one; nothing was done.
 pub const LAHAR_ERROR_STEP_TOO_LARGE: i32 = 100;
-/// The host left a value in a particle field that is not finite, not positive where it must be, or a position too far away;
-/// nothing was done.
+/// The host left a value in a particle field that is not finite, not positive where it must be, or a position outside the
+/// grid; nothing was done.
 pub const LAHAR_ERROR_NON_FINITE_INPUT: i32 = 101;
 /// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
 pub const LAHAR_ERROR_OUTSIDE_GRID: i32 = 102;

@@ -27,11 +27,11 @@ const _: () = {
 
 /// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
 ///
-/// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`: 0
-/// for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
+/// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`:
+/// 0 for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
 /// half-space. Place walls on node planes for linear shapes, and half a cell from node planes for quadratic ones (for
-/// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up to
-/// h late. Walls apply in the order in which they were added.
+/// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up
+/// to h late. Walls apply in the order in which they were added.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_wall {

@@ -236,10 +236,10 @@ pub unsafe extern "C" fn lahar_world_set_damping(
 /// One step of the given length.
 ///
 /// `dt`: [s], > 0 and not above lahar_world_stable_dt.
-/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is time
-/// again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
-/// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a
-/// static grid or too far away; the world cannot step until the host writes positions back or removes the body),
+/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is
+/// time again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
+/// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of
+/// a static grid or too far away; the world cannot step until the host writes positions back or removes the body),
 /// LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
 /// LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
@@ -318,8 +318,8 @@ fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
 
 /// Longest step that is stable now [s]: infinity without particles.
 ///
-/// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not above
-/// what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
+/// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
+/// above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
 /// dimension, nu the kinematic viscosity.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok

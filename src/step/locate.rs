@@ -10,12 +10,16 @@ use rayon::prelude::*;
 use crate::error::{Error, Place, Result, Status};
 use crate::grid::key::{block_nodes, morton_order};
 use crate::grid::{EDGE, GridPolicy, Key, Run};
+use crate::particles::reserve;
 use crate::shape::stencil::floor;
 use crate::world::state::{Body, Space, State};
 
 /// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther away a double is too coarse
 /// for the small moves of a step.
 pub const FARTHEST: f64 = 1e8;
+
+/// What memory is for, if there is none.
+const SORTING: &str = "the buffers of the sort";
 
 /// Buffers of the sort, kept from step to step.
 #[derive(Debug, Default)]
@@ -85,7 +89,7 @@ fn regroup<const D: usize>(world: &mut State<D>) -> Result<()> {
             GridPolicy::Static => world.grid.no_change(),
             policy => world.grid.set_blocks(&sorting.owners, policy == GridPolicy::GrowOnly)?,
         }
-        sort_bodies(world, &mut sorting);
+        sort_bodies(world, &mut sorting)?;
         let runs = world.bodies.iter().flat_map(|body| body.runs.iter().copied());
         world.tiles.assign(runs, world.grid.keys().len(), D)
     });
@@ -100,6 +104,7 @@ fn number_blocks<const D: usize>(world: &State<D>, sorting: &mut Sorting<D>) -> 
     sorting.slot.clear();
     sorting.number.clear();
     sorting.owners.clear();
+    reserve(&mut sorting.slot, world.particle_count(), SORTING)?;
     let mut last: Option<(Key<D>, u32)> = None;
     for body in &world.bodies {
         let at = body.particles.layout.position;
@@ -147,7 +152,7 @@ fn rank_owners<const D: usize>(sorting: &mut Sorting<D>) {
 }
 
 /// Sorts each body by block and cell. Particles of one cell keep their order.
-fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) {
+fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) -> Result<()> {
     let cells = block_nodes(D) as u32;
     let mut first = 0;
     for (b, body) in world.bodies.iter_mut().enumerate() {
@@ -161,12 +166,15 @@ fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) {
         let all = sorting.owners.len() * cells as usize;
         let order = &mut sorting.order;
         order.clear();
+        reserve(order, n, SORTING)?;
         if n < all / 8 {
             // a small body in a large grid: counting would cost the whole grid
             order.extend(0..n as u32);
             order.sort_unstable_by_key(|k| (slots[*k as usize], *k));
         } else {
             order.resize(n, 0);
+            sorting.count.clear();
+            reserve(&mut sorting.count, all + 1, SORTING)?;
             counting_sort(slots, all, &mut sorting.count, order);
         }
         body.runs.clear();
@@ -182,6 +190,7 @@ fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) {
             body.particles.permute(order);
         }
     }
+    Ok(())
 }
 
 /// The stable order of `slots`, whose values are below `values`.

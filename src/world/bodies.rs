@@ -87,18 +87,16 @@ impl<const D: usize> State<D> {
                 "density [kg/m^3] or mass [kg] must be positive and finite, got {density} kg/m^3"
             )));
         }
-        let velocity: Vec<f64> = how.velocity[..D].repeat(n);
-        let stress = how.stress.repeat(n);
         self.add_particles(
             id,
             material,
             &ParticleArrays {
                 position: Strided::interleaved(points.as_flattened(), D)?,
-                volume: Strided::interleaved(&vec![volume; n], 1)?,
+                volume: Strided::constant(&[volume], n),
                 mass: None,
                 density,
-                velocity: Some(Strided::interleaved(&velocity, D)?),
-                stress: Some(Strided::interleaved(&stress, 6)?),
+                velocity: Some(Strided::constant(&how.velocity[..D], n)),
+                stress: Some(Strided::constant(&how.stress, n)),
             },
         )
     }

@@ -73,6 +73,12 @@ impl<'a> Strided<'a> {
         Self::new(data, Strides::new(data.len() / components, components, 0, 0)?)
     }
 
+    /// The same components for each of `count` points.
+    pub fn constant(data: &'a [f64], count: usize) -> Self {
+        let strides = Strides { count, components: data.len(), component: 1, point: 0 };
+        Self { data, strides }
+    }
+
     /// Component c of point k.
     #[inline(always)]
     pub fn get(&self, c: usize, k: usize) -> f64 {

@@ -128,7 +128,8 @@ static void bad_numbers(void) {
 }
 
 static void bad_polygons(void) {
-  const double unknown_first[] = {NAN, 0, 1, 0, 0, 1}, unknown_last[] = {0, 0, 1, 0, 0, NAN}, endless[] = {0, 0, INFINITY, 0, 0, 1};
+  const double unknown_first[] = {NAN, 0, 1, 0, 0, 1}, unknown_last[] = {0, 0, 1, 0, 0, NAN};
+  const double endless[] = {0, 0, INFINITY, 0, 0, 1};
   const double in_a_line[] = {0, 0, 1, 1, 2, 2}, there_and_back[] = {0, 0, 1, 0, 1, 1, 1, 0}, few[] = {0, 0, 1, 1};
   const struct {
     const double *vertices;
@@ -273,7 +274,10 @@ static void more_than_memory(void) {
   int status = -1;
   pid_t child = fork();
   CHECK(child >= 0);
-  if (child == 0) _exit(bodies_larger_than_memory());
+  if (child == 0) {
+    alarm(60); /* a failed allocation may also hang */
+    _exit(bodies_larger_than_memory());
+  }
   CHECK(waitpid(child, &status, 0) == child);
   CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
