@@ -43,7 +43,7 @@ typedef struct marks { /* the experiment: times and values */
 typedef struct series { /* the computation, step by step */
     int64_t count, capacity;
     double *time, *front, *height; /* [s], x / a, y / H */
-    double worst_volume, most_void; /* largest |V / V0 - 1| of the water, largest volume of voids over V0 */
+    double worst_volume, most_void; /* largest |V / V0 - 1| up to the last mark of the front, largest share of voids in it */
 } series;
 
 static settings read_arguments(int argc, char **argv) {
@@ -164,8 +164,10 @@ static void note(lahar_world *world, int64_t body, double start_volume, series *
     check(lahar_world_time(world, &r->time[r->count]));
     r->front[r->count] = front / width;
     r->height[r->count] = near_wall / (0.2 * width) / (2.0 * width);
-    r->worst_volume = fmax(r->worst_volume, fabs(water / start_volume - 1.0));
-    r->most_void = fmax(r->most_void, voids / start_volume);
+    if (r->time[r->count] <= last_front * sqrt(width / (2.0 * gravity))) {
+        r->worst_volume = fmax(r->worst_volume, fabs((water + voids) / start_volume - 1.0));
+        r->most_void = fmax(r->most_void, voids / start_volume);
+    }
     ++r->count;
 }
 
