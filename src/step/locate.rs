@@ -83,9 +83,6 @@ fn regroup<const D: usize>(world: &mut State<D>) -> Result<()> {
     let result = number_blocks(world, &mut sorting).and_then(|()| {
         rank_owners(&mut sorting);
         match world.options.grid_policy {
-            GridPolicy::Static if world.grid.keys().is_empty() => {
-                world.grid.set_blocks(&world.static_blocks, false)?;
-            }
             GridPolicy::Static => world.grid.no_change(),
             policy => world.grid.set_blocks(&sorting.owners, policy == GridPolicy::GrowOnly)?,
         }

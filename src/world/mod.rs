@@ -76,8 +76,8 @@ impl World {
         options.check()?;
         let (context, options) = (context.clone(), options.clone());
         let inner = match options.dimension {
-            2 => Inner::Two(Box::new(State::new(context, options))),
-            _ => Inner::Three(Box::new(State::new(context, options))),
+            2 => Inner::Two(Box::new(State::new(context, options)?)),
+            _ => Inner::Three(Box::new(State::new(context, options)?)),
         };
         Ok(World {
             inner,

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use crate::boundary::Wall;
 use crate::context::Context;
-use crate::error::Place;
+use crate::error::{Place, Result};
 use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
-use crate::particles::{ChunkMut, Particles, for_each_chunk};
+use crate::particles::{ChunkMut, Particles, for_each_chunk, reserve};
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
 use crate::step::time_step::Limits;
@@ -87,8 +87,6 @@ pub struct State<const D: usize> {
     pub impulses: Vec<[f64; 3]>,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
-    /// Blocks of the box of a static grid that particles may stand in.
-    pub static_blocks: Vec<Key<D>>,
     /// Particles came or went since the last sort.
     pub regroup: bool,
     /// Whether steps use the threads of the context.
@@ -103,8 +101,8 @@ pub struct State<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
-    /// An empty world. The options have been checked.
-    pub fn new(context: Arc<Context>, options: Options) -> Self {
+    /// An empty world; a static grid has its blocks from the start. The options have been checked.
+    pub fn new(context: Arc<Context>, options: Options) -> Result<Self> {
         let origin = std::array::from_fn(|d| options.origin[d]);
         let mut world = Self {
             kernels: Kernels::new(options.shape),
@@ -116,7 +114,6 @@ impl<const D: usize> State<D> {
             walls: Vec::new(),
             impulses: Vec::new(),
             sorting: Sorting::default(),
-            static_blocks: Vec::new(),
             regroup: true,
             parallel: false,
             limits: None,
@@ -125,9 +122,10 @@ impl<const D: usize> State<D> {
             hooks: [const { None }; HOOK_POINTS],
         };
         if world.options.grid_policy == GridPolicy::Static {
-            world.static_blocks = world.blocks_of_box();
+            let blocks = world.blocks_of_box()?;
+            world.grid.set_blocks(&blocks, false)?;
         }
-        world
+        Ok(world)
     }
 
     /// Origin, spacing and the two figures of the shape function.
@@ -147,7 +145,8 @@ impl<const D: usize> State<D> {
             || (0..D).all(|d| min[d] <= x[d] && x[d] <= max[d])
     }
 
-    fn blocks_of_box(&self) -> Vec<Key<D>> {
+    /// Blocks that particles in the box of a static grid may stand in.
+    fn blocks_of_box(&self) -> Result<Vec<Key<D>>> {
         let space = self.space();
         let block = |corner: [f64; 3]| -> [i64; D] {
             let xi = space.to_units(std::array::from_fn(|d| corner[d]));
@@ -155,17 +154,19 @@ impl<const D: usize> State<D> {
         };
         let (low, high) = (block(self.options.box_min), block(self.options.box_max));
         let count: [i64; D] = std::array::from_fn(|d| high[d] - low[d] + 1);
-        (0..count.iter().product())
-            .map(|flat: i64| {
-                let mut rest = flat;
-                let mut key = [0; D];
-                for d in (0..D).rev() {
-                    key[d] = (low[d] + rest % count[d]) as i32;
-                    rest /= count[d];
-                }
-                key
-            })
-            .collect()
+        let all: i64 = count.iter().product();
+        let mut blocks = Vec::new();
+        reserve(&mut blocks, all as usize, "the blocks of a static grid")?;
+        blocks.extend((0..all).map(|flat| {
+            let mut rest = flat;
+            let mut key = [0; D];
+            for d in (0..D).rev() {
+                key[d] = (low[d] + rest % count[d]) as i32;
+                rest /= count[d];
+            }
+            key
+        }));
+        Ok(blocks)
     }
 
     /// Number and step of what happens now, for errors.
