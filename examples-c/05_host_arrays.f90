@@ -99,7 +99,7 @@ contains
     call print('rest_stress_change_over_base_stress', maxval(abs(stress - h%stress)) / (density * gravity * height))
   end subroutine rest
 
-  !> The memory itself, without a copy. Its order is that of storage, so a value is looked for among all.
+  !> The memory itself, without a copy. Its order is that of storage; the ids tell whose value is whose.
   subroutine look(world, body, h)
     type(lahar_world), intent(inout) :: world
     integer(lahar_index), intent(in) :: body
@@ -107,15 +107,14 @@ contains
     type(lahar_view) :: view
     real(lahar_real), pointer :: values(:, :)
     real(lahar_real), allocatable :: by_id(:)
-    integer :: k, wrong
-    allocate (by_id(h%count))
+    integer(lahar_index), allocatable :: ids(:)
+    integer :: wrong
+    allocate (by_id(h%count), ids(h%count))
+    call world%ids(body, ids)
     call world%read(body, 'equivalent_plastic_strain', by_id)
     call world%view(body, 'equivalent_plastic_strain', LAHAR_ACCESS_READ, view)
     call view%data(values)
-    wrong = 0
-    do k = 1, h%count
-      if (all(values(:, 1) < by_id(k) .or. values(:, 1) > by_id(k))) wrong = wrong + 1
-    end do
+    wrong = count(values(:, 1) < by_id(ids + 1) .or. values(:, 1) > by_id(ids + 1))
     call print('slide_largest_plastic_strain', maxval(values(:, 1)))
     call print('view_differs_from_copy', real(wrong, lahar_real))
     call view%free()

@@ -1037,6 +1037,7 @@ module lahar
     procedure, private :: write_scalars => world_write_scalars
     procedure, private :: write_vectors => world_write_vectors
     generic :: write => write_scalars, write_vectors
+    procedure :: ids => world_ids
     procedure :: view => world_view
     procedure :: add_wall => world_add_wall
     procedure :: remove_wall => world_remove_wall
@@ -1519,6 +1520,17 @@ contains
   end subroutine world_write_vectors
 
   ! ---- views, in storage order
+
+  !> Ids of the particles of a body, from 0, in the order of storage; `ids` has one element per particle.
+  subroutine world_ids(self, body, ids, stat, errmsg)
+    class(lahar_world), intent(in) :: self
+    integer(c_int64_t), intent(in) :: body
+    integer(c_int64_t), intent(inout), contiguous :: ids(:)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: count(1)
+    call finish(lahar_body_ids(self%handle, body, size(ids, kind=c_int64_t), ids, count), stat, errmsg)
+  end subroutine world_ids
 
   !> Opens a view of a field with LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
   subroutine world_view(self, body, field, access, view, stat, errmsg)
