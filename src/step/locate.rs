@@ -81,6 +81,7 @@ fn nobody_moved<const D: usize>(world: &State<D>) -> bool {
 fn regroup<const D: usize>(world: &mut State<D>) -> Result<()> {
     let mut sorting = std::mem::take(&mut world.sorting);
     let result = number_blocks(world, &mut sorting).and_then(|()| {
+        world.regroup = true; // until it is done: without memory the runs would not belong to the new blocks
         rank_owners(&mut sorting);
         match world.options.grid_policy {
             GridPolicy::Static => world.grid.no_change(),
