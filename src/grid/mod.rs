@@ -13,14 +13,6 @@ use crate::error::{Error, Result};
 /// Four lanes of a node: [m, mv] or [m, v] or [–, f]; in two dimensions the last lane is zero.
 pub type Lanes = [f64; 4];
 
-/// y += a x.
-#[inline(always)]
-pub fn add_lanes(y: &mut Lanes, a: f64, x: &Lanes) {
-    for l in 0..4 {
-        y[l] += a * x[l];
-    }
-}
-
 /// How blocks come and go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]

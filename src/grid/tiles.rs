@@ -7,8 +7,8 @@ use super::{EDGE, Grid, Lanes, NONE};
 use crate::error::Result;
 use crate::particles::reserve;
 
-/// A node of a tile: [m, mv] and [–, f] on the way to the grid, R0 and R1 on the way back.
-pub type TileNode = [Lanes; 2];
+/// A node of a tile: [m, mv; –, f] on the way to the grid, two records of it on the way back.
+pub use crate::simd::TileNode;
 
 /// Particles of one body that stand in one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl Tiles {
             self.nodes.clear();
             self.nodes.shrink_to(2 * nodes);
             reserve(&mut self.nodes, nodes, "the tiles of the grid")?;
-            self.nodes.resize(nodes, [[0.0; 4]; 2]);
+            self.nodes.resize(nodes, TileNode::default());
         }
         Ok(())
     }
@@ -136,15 +136,22 @@ pub fn shared_rows<const D: usize>(
     }
 }
 
-/// Copies R0 and R1 of the nodes that the particles of `block` see into a tile.
-pub fn load_tile<const D: usize>(grid: &Grid<D>, block: u32, edge: usize, tile: &mut [TileNode]) {
+/// Copies the nodes that the particles of `block` see into a tile: R0 in the first four lanes, `second` in the others.
+pub fn load_tile<const D: usize>(
+    grid: &Grid<D>,
+    second: &[Lanes],
+    block: u32,
+    edge: usize,
+    tile: &mut [TileNode],
+) {
     for corner in 0..1 << D {
         let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
         shared_rows::<D>(edge, corner, |t, b, len| {
             let r0 = &grid.velocity[source + b..][..len];
-            let r1 = &grid.increment[source + b..][..len];
-            for (node, (r0, r1)) in tile[t..t + len].iter_mut().zip(r0.iter().zip(r1)) {
-                *node = [*r0, *r1];
+            let r1 = &second[source + b..][..len];
+            for (TileNode(node), (r0, r1)) in tile[t..t + len].iter_mut().zip(r0.iter().zip(r1)) {
+                node[..4].copy_from_slice(r0);
+                node[4..].copy_from_slice(r1);
             }
         });
     }

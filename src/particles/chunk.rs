@@ -5,6 +5,9 @@ use super::Layout;
 /// Particles in a chunk: its columns and its scratch fit the second-level cache.
 pub const CHUNK: usize = 256;
 
+/// Particles in a task, a number of chunks that one thread works through.
+const TASK: usize = 4 * CHUNK;
+
 /// Most components that a body can have: those of the engine and 128 of a model's state.
 pub const MAX_COMPONENTS: usize = 168;
 
@@ -16,6 +19,8 @@ pub struct ChunkMut<'a> {
     pub first: usize,
     /// Number of particles.
     pub len: usize,
+    /// Place of the first particle in `columns`.
+    start: usize,
     columns: [&'a mut [f64]; MAX_COMPONENTS],
 }
 
@@ -28,33 +33,24 @@ impl<'a> ChunkMut<'a> {
                 *to = &mut column[..len];
             }
         }
-        Self { layout, first: 0, len, columns }
+        Self { layout, first: 0, len, start: 0, columns }
     }
 
     /// One component of all particles of the run.
     #[inline(always)]
     pub fn column(&self, component: usize) -> &[f64] {
-        self.columns[component]
+        &self.columns[component][self.start..self.start + self.len]
     }
 
     /// One component of all particles of the run, to write.
     #[inline(always)]
     pub fn column_mut(&mut self, component: usize) -> &mut [f64] {
-        self.columns[component]
+        &mut self.columns[component][self.start..self.start + self.len]
     }
 
     /// `N` components of particle k.
-    #[inline(always)]
     pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
-        std::array::from_fn(|c| self.columns[first + c][k])
-    }
-
-    /// Sets `N` components of particle k.
-    #[inline(always)]
-    pub fn set<const N: usize>(&mut self, first: usize, k: usize, values: [f64; N]) {
-        for c in 0..N {
-            self.columns[first + c][k] = values[c];
-        }
+        std::array::from_fn(|c| self.column(first + c)[k])
     }
 
     /// The run in two, the first part with `mid` particles.
@@ -70,27 +66,37 @@ impl<'a> ChunkMut<'a> {
             layout: self.layout,
             first: self.first + mid,
             len: self.len - mid,
+            start: 0,
             columns: right,
         };
         self.len = mid;
         (self, right)
     }
+
+    /// Calls `work` on one chunk of the run after the other.
+    pub fn for_each_chunk(mut self, mut work: impl FnMut(&mut Self)) {
+        let (first, len) = (self.first, self.len);
+        for start in (0..len).step_by(CHUNK) {
+            (self.first, self.start, self.len) = (first + start, start, CHUNK.min(len - start));
+            work(&mut self);
+        }
+    }
 }
 
-/// Calls `work` on every chunk of at most [`CHUNK`] particles and folds the results from left to right, so that neither the
-/// chunks nor the order of the fold depend on the number of threads.
-pub fn for_each_chunk<R: Send>(
-    chunk: ChunkMut<'_>,
+/// Calls `work` on tasks of at most 1024 particles and folds the results from left to right, so that neither the tasks nor the order
+/// of the fold depend on the number of threads.
+pub fn for_each_task<R: Send>(
+    particles: ChunkMut<'_>,
     parallel: bool,
     work: &(impl Fn(ChunkMut<'_>) -> R + Sync),
     fold: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
-    if chunk.len <= CHUNK {
-        return work(chunk);
+    if particles.len <= TASK {
+        return work(particles);
     }
-    let mid = (chunk.len / 2).next_multiple_of(CHUNK);
-    let (left, right) = chunk.split(mid);
-    let run = |part| for_each_chunk(part, parallel, work, fold);
+    let mid = (particles.len / 2).next_multiple_of(TASK);
+    let (left, right) = particles.split(mid);
+    let run = |part| for_each_task(part, parallel, work, fold);
     let (a, b) =
         if parallel { rayon::join(|| run(left), || run(right)) } else { (run(left), run(right)) };
     fold(a, b)

@@ -7,7 +7,7 @@ pub mod chunk;
 pub mod fields;
 pub mod seeding;
 
-pub use chunk::{CHUNK, ChunkMut, for_each_chunk};
+pub use chunk::{CHUNK, ChunkMut, for_each_task};
 pub use fields::{FieldInfo, Layout};
 
 use crate::error::{Error, Result, Status};

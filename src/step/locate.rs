@@ -11,7 +11,7 @@ use crate::error::{Error, Place, Result, Status};
 use crate::grid::key::{block_nodes, morton_order};
 use crate::grid::{EDGE, GridPolicy, Key, Run};
 use crate::particles::reserve;
-use crate::shape::stencil::floor;
+use crate::simd::Real;
 use crate::world::state::{Body, Space, State};
 
 /// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther away a double is too coarse
@@ -50,7 +50,7 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)>
     let mut key = [0; D];
     let mut cell = 0;
     for d in 0..D {
-        let first = floor(xi[d] - space.first_offset);
+        let first = Real::floor(xi[d] - space.first_offset);
         if !(first.abs() < FARTHEST) {
             return None;
         }

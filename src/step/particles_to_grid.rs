@@ -1,46 +1,103 @@
 //! Stage 2, particles to grid: m_i = Σ w m, (mv)_i = Σ w m (v + C r), f_i = −Σ V σ ∇w with r = x_i − x_p.
 //!
 //! The particles of a block add into the block's tile; then every block pulls from the tiles that reach it, in a fixed order.
+//!
+//! Mass, momentum and force go in one pass over nodes of eight lanes, [m, mv; –, f]. With the weights w_n, their slopes w'_n and
+//! the pairs c_n = [n w_n; w'_n] of an axis, a particle gives the node n of an axis w_n B + c_n G: the value B = [m, m v_0; 0]
+//! at the lowest node of the stencil, and the column G = [0, m h C_d; –, −V σ_d / h] of affine matrix and stress. The axes
+//! nest, so that a node of a row costs two products and sums. Eight particles share the arithmetic before the nodes.
+//! Cost per particle, quadratic in 3D: 93 fused products of eight lanes, 27 nodes read and written, 23 doubles read.
+
+use std::marker::PhantomData;
 
 use rayon::prelude::*;
 
 use crate::grid::blocks::Neighbours;
 use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
-use crate::grid::{EDGE, Key, Lanes, NONE, Run, add_lanes};
+use crate::grid::{EDGE, Key, Lanes, NONE, Run};
 use crate::particles::Particles;
-use crate::shape::stencil::{Row, ShapeFunction, Stencil};
+use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::simd::{Isa, Kernel, LANES, Vector};
 use crate::tensor::SYMMETRIC_INDEX;
 use crate::world::state::{Space, State};
 
-/// The scatter of one run of particles into a tile of the block with the given key.
-pub type Scatter<const D: usize> = fn(&Particles, &Space<D>, Key<D>, Run, usize, &mut [TileNode]);
+/// What a scatter of one run of particles needs beside the tile.
+#[derive(Clone, Copy)]
+pub struct ScatterJob<'a, const D: usize> {
+    /// The instruction set.
+    pub isa: Isa,
+    /// The particles of the body.
+    pub particles: &'a Particles,
+    /// Origin and spacing.
+    pub space: &'a Space<D>,
+    /// The block of the run.
+    pub key: Key<D>,
+    /// The run.
+    pub run: Run,
+    /// Whether the stresses give forces.
+    pub forces: bool,
+}
+
+/// The scatter of one run of particles into a tile of its block.
+pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 
 /// Maps mass, momentum and the forces of the stresses to the grid.
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
-    scatter(world, world.kernels.scatter);
-    let (grid, tiles) = (&mut world.grid, &world.tiles);
-    pull::<D>(&grid.backward, tiles, 0, world.parallel, &mut grid.velocity);
-    pull::<D>(&grid.backward, tiles, 1, world.parallel, &mut grid.force);
+    scatter(world, true);
+    let State { grid, tiles, parallel, context, .. } = world;
+    let (velocity, force) = (&mut grid.velocity[..], &mut grid.force[..]);
+    let nodes = block_nodes(D);
+    let pull = |((r0, f), around): ((&mut [Lanes], &mut [Lanes]), &Neighbours)| {
+        let sums = sum_of_tiles::<D>(context.isa(), tiles, around);
+        for (n, TileNode([m, x, y, z, _, fx, fy, fz])) in sums.into_iter().take(nodes).enumerate() {
+            (r0[n], f[n]) = ([m, x, y, z], [0.0, fx, fy, fz]);
+        }
+    };
+    if *parallel {
+        let records = velocity.par_chunks_mut(nodes).zip(force.par_chunks_mut(nodes));
+        records.zip(&grid.backward).for_each(pull);
+    } else {
+        let records = velocity.chunks_mut(nodes).zip(force.chunks_mut(nodes));
+        records.zip(&grid.backward).for_each(pull);
+    }
 }
 
-/// Maps the new mass and momentum of the particles into R1 (second scatter of MUSL).
+/// Maps the new momentum of the particles into R1 (second scatter of MUSL).
 pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
-    scatter(world, world.kernels.scatter_velocity);
-    let (grid, tiles) = (&mut world.grid, &world.tiles);
-    pull::<D>(&grid.backward, tiles, 1, world.parallel, &mut grid.increment);
+    scatter(world, false);
+    let State { grid, tiles, parallel, context, .. } = world;
+    let nodes = block_nodes(D);
+    let pull = |(r1, around): (&mut [Lanes], &Neighbours)| {
+        let sums = sum_of_tiles::<D>(context.isa(), tiles, around);
+        for (n, TileNode([m, x, y, z, ..])) in sums.into_iter().take(nodes).enumerate() {
+            r1[n] = [m, x, y, z];
+        }
+    };
+    if *parallel {
+        grid.increment.par_chunks_mut(nodes).zip(&grid.backward).for_each(pull);
+    } else {
+        grid.increment.chunks_mut(nodes).zip(&grid.backward).for_each(pull);
+    }
 }
 
-fn scatter<const D: usize>(world: &mut State<D>, kernel: Scatter<D>) {
-    let space = world.space();
+fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
+    let (space, kernel) = (world.space(), world.kernels.scatter);
     let State { bodies, grid, tiles, context, .. } = world;
-    let (nodes, edge) = (tiles.tile_nodes(D), tiles.edge);
+    let nodes = tiles.tile_nodes(D);
     let used = &mut tiles.nodes[..nodes * tiles.tiles.len()];
     let fill = |(tile, runs): (&mut [TileNode], &(u32, u32))| {
-        tile.fill([[0.0; 4]; 2]);
+        tile.fill(TileNode::default());
         for run in &tiles.runs[runs.0 as usize..runs.1 as usize] {
-            let key = grid.keys()[run.block as usize];
-            kernel(&bodies[run.body as usize].particles, &space, key, *run, edge, tile);
+            let job = ScatterJob {
+                isa: context.isa(),
+                particles: &bodies[run.body as usize].particles,
+                space: &space,
+                key: grid.keys()[run.block as usize],
+                run: *run,
+                forces,
+            };
+            kernel(&job, tile);
         }
     };
     if world.parallel {
@@ -53,166 +110,204 @@ fn scatter<const D: usize>(world: &mut State<D>, kernel: Scatter<D>) {
     }
 }
 
-/// Every block takes record `record` of its nodes from the tiles that reach it, corner by corner.
-fn pull<const D: usize>(
-    backward: &[Neighbours],
+/// Most nodes of a block.
+const BLOCK_NODES: usize = block_nodes(3);
+
+/// What the tiles around a block hold for its nodes, added corner by corner.
+fn sum_of_tiles<const D: usize>(
+    isa: Isa,
     tiles: &Tiles,
-    record: usize,
-    parallel: bool,
-    target: &mut [Lanes],
-) {
-    let add = |(nodes, neighbours): (&mut [Lanes], &Neighbours)| {
-        nodes.fill([0.0; 4]);
-        for corner in 0..1 << D {
-            let source = neighbours[corner];
-            let (first, end) =
-                if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
-            for t in first..end {
-                let tile = tiles.tile(t as usize, D);
-                shared_rows::<D>(tiles.edge, corner, |from, to, len| {
-                    for (node, source) in nodes[to..to + len].iter_mut().zip(&tile[from..]) {
-                        add_lanes(node, 1.0, &source[record]);
-                    }
-                });
+    around: &Neighbours,
+) -> [TileNode; BLOCK_NODES] {
+    struct Sum<'a, const D: usize>(&'a Tiles, &'a Neighbours, &'a mut [TileNode]);
+    impl<const D: usize> Kernel for Sum<'_, D> {
+        type Output = ();
+        #[inline(always)]
+        fn run<V: Vector>(self) {
+            let Self(tiles, around, sums) = self;
+            for corner in 0..1 << D {
+                let source = around[corner];
+                let (first, end) =
+                    if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
+                for t in first..end {
+                    let tile = tiles.tile(t as usize, D);
+                    shared_rows::<D>(tiles.edge, corner, |from, to, len| {
+                        for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
+                            (V::load_node(sum) + V::load_node(node)).store_node(sum);
+                        }
+                    });
+                }
             }
+        }
+    }
+    let mut sums = [TileNode::default(); BLOCK_NODES];
+    isa.dispatch(Sum::<D>(tiles, around, &mut sums));
+    sums
+}
+
+/// What the axes of eight stencils contribute to their nodes: w_n, and the two halves of c_n.
+pub struct Weights<const N: usize, const D: usize> {
+    w: [[[f64; LANES]; N]; D],
+    low: [[[f64; LANES]; N]; D],
+    high: [[[f64; LANES]; N]; D],
+}
+
+impl<const N: usize, const D: usize> Weights<N, D> {
+    /// c_n = [n w_n; w'_n], or [w'_n; w'_n] if not `moments`.
+    #[inline(always)]
+    pub fn new<V: Vector>(stencil: &Stencil<V, N, D>, moments: bool) -> Self {
+        let zeros = [[[0.0; LANES]; N]; D];
+        let mut weights = Self { w: zeros, low: zeros, high: zeros };
+        for d in 0..D {
+            let axis = &stencil.axes[d];
+            for n in 0..N {
+                weights.w[d][n] = axis.w[n].to_array();
+                weights.high[d][n] = axis.dw[n].to_array();
+                let low = if moments { V::splat(n as f64) * axis.w[n] } else { axis.dw[n] };
+                weights.low[d][n] = low.to_array();
+            }
+        }
+        weights
+    }
+
+    /// w_n of particle l in all lanes.
+    #[inline(always)]
+    pub fn w<V: Vector>(&self, d: usize, n: usize, l: usize) -> V {
+        V::splat(self.w[d][n][l])
+    }
+
+    /// c_n of particle l.
+    #[inline(always)]
+    pub fn c<V: Vector>(&self, d: usize, n: usize, l: usize) -> V {
+        V::halves(self.low[d][n][l], self.high[d][n][l])
+    }
+}
+
+/// Places of the lowest nodes of eight stencils in the tile of block `key`, whose edge is 4 + N − 1 nodes.
+#[inline(always)]
+pub fn corners<V: Vector, const N: usize, const D: usize>(
+    stencil: &Stencil<V, N, D>,
+    key: Key<D>,
+) -> [u32; LANES] {
+    let edge = V::splat((EDGE + N - 1) as f64);
+    let mut at = V::splat(0.0);
+    for d in 0..D {
+        let lowest = V::splat(f64::from(key[d]) * EDGE as f64);
+        at = at.mul_add(edge, stencil.axes[d].first - lowest);
+    }
+    at.to_indices()
+}
+
+/// Nodes from the first to the last of a stencil in a tile, inclusive.
+pub const fn span(nodes: usize, dimension: usize) -> usize {
+    let edge = EDGE + nodes - 1;
+    let rows = if dimension == 3 { edge + 1 } else { 1 };
+    (nodes - 1) * (rows * edge + 1) + 1
+}
+
+/// Kernel of a run.
+pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
+    job: &ScatterJob<'_, D>,
+    tile: &mut [TileNode],
+) {
+    job.isa.dispatch(ScatterRun::<S, N, D>(job, tile, PhantomData));
+}
+
+struct ScatterRun<'a, S, const N: usize, const D: usize>(
+    &'a ScatterJob<'a, D>,
+    &'a mut [TileNode],
+    PhantomData<S>,
+);
+
+impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<'_, S, N, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(job, tile, _) = self;
+        let (particles, end) = (job.particles, job.run.end as usize);
+        let position = particles.layout.position;
+        for k in (job.run.first as usize..end).step_by(LANES) {
+            let x = std::array::from_fn(|d| V::load(&particles.column(position + d)[k..]));
+            let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
+            let weights = Weights::new(&stencil, true);
+            let corners = corners(&stencil, job.key);
+            let (value, columns) = payload(job, k, &stencil);
+            for l in 0..LANES.min(end - k) {
+                let nodes = &mut tile[corners[l] as usize..][..span(N, D)];
+                let columns = std::array::from_fn(|d| columns[d][l]);
+                spread(nodes, &weights, l, value[l], columns);
+            }
+        }
+    }
+}
+
+/// Value at the lowest node and columns of affine matrix and stress, of eight particles from k on.
+#[inline(always)]
+fn payload<V: Vector, const N: usize, const D: usize>(
+    job: &ScatterJob<'_, D>,
+    k: usize,
+    stencil: &Stencil<V, N, D>,
+) -> ([V; LANES], [[V; LANES]; D]) {
+    let (particles, layout) = (job.particles, &job.particles.layout);
+    let load = |c: usize| V::load(&particles.column(c)[k..]);
+    let zero = V::splat(0.0);
+    let mass = load(layout.mass);
+    let mut value = [zero; LANES];
+    value[0] = mass;
+    for a in 0..D {
+        value[1 + a] = mass * load(layout.velocity + a);
+    }
+    let mut columns = [[zero; LANES]; D];
+    if layout.deformation_gradient > layout.affine {
+        let mh = mass * V::splat(job.space.spacing);
+        for d in 0..D {
+            for a in 0..D {
+                let slope = mh * load(layout.affine + a * D + d);
+                columns[d][1 + a] = slope;
+                value[1 + a] = (-stencil.axes[d].fraction).mul_add(slope, value[1 + a]);
+            }
+        }
+    }
+    if job.forces {
+        let scale = load(layout.volume) * V::splat(-job.space.inverse);
+        for d in 0..D {
+            for a in 0..D {
+                columns[d][5 + a] = scale * load(layout.stress + SYMMETRIC_INDEX[a][d]);
+            }
+        }
+    }
+    (V::transpose(value), columns.map(V::transpose))
+}
+
+/// Adds what particle l gives to the nodes of its stencil.
+#[inline(always)]
+fn spread<V: Vector, const N: usize, const D: usize>(
+    nodes: &mut [TileNode],
+    weights: &Weights<N, D>,
+    l: usize,
+    value: V,
+    columns: [V; D],
+) {
+    let edge = EDGE + N - 1;
+    let w = |d, n| weights.w::<V>(d, n, l);
+    let c = |d, n| weights.c::<V>(d, n, l);
+    let last: [(V, V); N] = std::array::from_fn(|n| (w(D - 1, n), c(D - 1, n)));
+    let mut add = |first: usize, value: V, column: V| {
+        for (n, node) in nodes[first..first + N].iter_mut().enumerate() {
+            let sum = last[n].0.mul_add(value, V::load_node(node));
+            last[n].1.mul_add(column, sum).store_node(node);
         }
     };
-    let nodes = block_nodes(D);
-    if parallel {
-        target.par_chunks_mut(nodes).zip(backward).for_each(add);
-    } else {
-        target.chunks_mut(nodes).zip(backward).for_each(add);
-    }
-}
-
-/// A vector in lanes 1, 2, 3.
-#[inline(always)]
-fn lanes<const D: usize>(first: f64, v: [f64; D]) -> Lanes {
-    std::array::from_fn(|l| {
-        if l == 0 {
-            first
-        } else if l <= D {
-            v[l - 1]
+    for i in 0..N {
+        let plane = w(0, i).mul_add(value, c(0, i) * columns[0]);
+        if D == 2 {
+            add(i * edge, plane, w(0, i) * columns[1]);
         } else {
-            0.0
-        }
-    })
-}
-
-/// Position of the lowest node of a stencil in the tile of block `key`.
-#[inline(always)]
-pub fn corner<const N: usize, const D: usize>(
-    stencil: &Stencil<N, D>,
-    key: Key<D>,
-    edge: usize,
-) -> usize {
-    (0..D).fold(0, |at, d| {
-        let place = stencil.axes[d].first as i64 - i64::from(key[d]) * EDGE as i64;
-        at * edge + place as usize
-    })
-}
-
-/// What a particle spreads: mass and momentum at the lowest node of its stencil, and their change from node to node along each axis.
-struct Spread<const D: usize> {
-    lowest: Lanes,
-    slope: [Lanes; D],
-}
-
-impl<const D: usize> Spread<D> {
-    /// m (1, v + C r); without an affine matrix C = 0.
-    #[inline(always)]
-    fn new<const N: usize>(
-        particles: &Particles,
-        k: usize,
-        stencil: &Stencil<N, D>,
-        h: f64,
-    ) -> Self {
-        let layout = &particles.layout;
-        let [mass] = particles.get::<1>(layout.mass, k);
-        let v = particles.get::<D>(layout.velocity, k);
-        let mut spread = Self { lowest: lanes(mass, v.map(|c| mass * c)), slope: [[0.0; 4]; D] };
-        if layout.deformation_gradient > layout.affine {
-            for d in 0..D {
-                let c = |a: usize| particles.column(layout.affine + a * D + d)[k];
-                spread.slope[d] = lanes(0.0, std::array::from_fn::<f64, D, _>(|a| mass * h * c(a)));
-                add_lanes(&mut spread.lowest, -stencil.axes[d].fraction, &spread.slope[d]);
+            let (along_y, along_z) = (w(0, i) * columns[1], w(0, i) * columns[D - 1]);
+            for j in 0..N {
+                let row = w(1, j).mul_add(plane, c(1, j) * along_y);
+                add((i * edge + j) * edge, row, w(1, j) * along_z);
             }
         }
-        spread
-    }
-
-    /// Its value at the first node of a row.
-    #[inline(always)]
-    fn at(&self, row: &Row) -> Lanes {
-        let mut value = self.lowest;
-        for d in 0..D - 1 {
-            add_lanes(&mut value, row.node[d] as f64, &self.slope[d]);
-        }
-        value
-    }
-}
-
-/// Kernel: m (1, v + C r) into record 0 and −V σ ∇w into record 1.
-pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    particles: &Particles,
-    space: &Space<D>,
-    key: Key<D>,
-    run: Run,
-    edge: usize,
-    tile: &mut [TileNode],
-) {
-    let layout = &particles.layout;
-    for k in run.first as usize..run.end as usize {
-        let xi = space.to_units(particles.get::<D>(layout.position, k));
-        let stencil = Stencil::<N, D>::new::<S>(xi);
-        let spread = Spread::new(particles, k, &stencil, space.spacing);
-        let [volume] = particles.get::<1>(layout.volume, k);
-        let stress = particles.get::<6>(layout.stress, k);
-        // −V σ / h by columns
-        let scale = -volume / space.spacing;
-        let flux: [Lanes; D] = std::array::from_fn(|d| {
-            let column = |a: usize| scale * stress[SYMMETRIC_INDEX[a][d]];
-            lanes(0.0, std::array::from_fn::<f64, D, _>(column))
-        });
-        let z = *stencil.last();
-        let nodes = &mut tile[corner(&stencil, key, edge)..];
-        stencil.rows(edge, |row| {
-            let mut momentum = spread.at(&row);
-            let mut outer = [0.0; 4];
-            for d in 0..D - 1 {
-                add_lanes(&mut outer, row.dw[d], &flux[d]);
-            }
-            for (n, node) in nodes[row.offset..row.offset + N].iter_mut().enumerate() {
-                add_lanes(&mut node[0], row.w * z.w[n], &momentum);
-                add_lanes(&mut node[1], z.w[n], &outer);
-                add_lanes(&mut node[1], row.w * z.dw[n], &flux[D - 1]);
-                add_lanes(&mut momentum, 1.0, &spread.slope[D - 1]);
-            }
-        });
-    }
-}
-
-/// Kernel: m (1, v + C r) into record 1.
-pub fn scatter_velocity_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    particles: &Particles,
-    space: &Space<D>,
-    key: Key<D>,
-    run: Run,
-    edge: usize,
-    tile: &mut [TileNode],
-) {
-    for k in run.first as usize..run.end as usize {
-        let xi = space.to_units(particles.get::<D>(particles.layout.position, k));
-        let stencil = Stencil::<N, D>::new::<S>(xi);
-        let spread = Spread::new(particles, k, &stencil, space.spacing);
-        let z = *stencil.last();
-        let nodes = &mut tile[corner(&stencil, key, edge)..];
-        stencil.rows(edge, |row| {
-            let mut momentum = spread.at(&row);
-            for (n, node) in nodes[row.offset..row.offset + N].iter_mut().enumerate() {
-                add_lanes(&mut node[1], row.w * z.w[n], &momentum);
-                add_lanes(&mut momentum, 1.0, &spread.slope[D - 1]);
-            }
-        });
     }
 }

@@ -33,7 +33,7 @@ use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
 use options::{Options, check_damping, check_gravity};
 use queries::Totals;
-use state::{State, WallEntry};
+use state::{State, Stopwatch, WallEntry};
 
 /// A host's step may exceed the stable one by this much: its own arithmetic.
 const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
@@ -376,6 +376,11 @@ impl World {
     /// Sets a hook into the step, or takes it away.
     pub fn set_hook(&mut self, point: HookPoint, hook: Option<Hook>) {
         on!(&mut self, s => s.set_hook(point, hook));
+    }
+
+    /// Sets who is told about the stages of every chunk, on the thread that works on it; a call per chunk and stage.
+    pub fn set_stopwatch(&mut self, stopwatch: Option<Arc<Stopwatch>>) {
+        on!(&mut self, s => s.stopwatch = stopwatch);
     }
 
     /// Numbers of blocks and nodes, and their memory.
