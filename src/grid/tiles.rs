@@ -3,9 +3,11 @@
 //! A tile covers its block and the first N − 1 node layers of the next blocks: (4 + N − 1)^D nodes. After the scatter each
 //! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
 
+use super::blocks::Neighbours;
 use super::{EDGE, Grid, Lanes, NONE};
 use crate::error::Result;
 use crate::particles::reserve;
+use crate::simd::{Isa, Kernel, Vector};
 
 /// A node of a tile: [m, mv; –, f] on the way to the grid, two records of it on the way back.
 pub use crate::simd::TileNode;
@@ -113,46 +115,60 @@ impl Tiles {
     }
 }
 
-/// Visits the rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in
-/// the block, and the number of nodes.
+/// The rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in the block,
+/// and the number of nodes.
 #[inline(always)]
 pub fn shared_rows<const D: usize>(
     edge: usize,
     corner: usize,
-    mut visit: impl FnMut(usize, usize, usize),
-) {
-    let part = |d: usize| if corner >> d & 1 == 1 { (EDGE, edge - EDGE) } else { (0, EDGE) };
+) -> impl Iterator<Item = (usize, usize, usize)> {
+    let part = move |d: usize| if corner >> d & 1 == 1 { (EDGE, edge - EDGE) } else { (0, EDGE) };
     let (from, len) = part(D - 1);
     let (x, nx) = part(0);
-    for i in 0..nx {
+    let (y, ny) = if D == 2 { (0, 1) } else { part(1) };
+    (0..nx * ny).map(move |row| {
+        let (i, j) = (row / ny, row % ny);
         if D == 2 {
-            visit((x + i) * edge + from, i * EDGE, len);
+            ((x + i) * edge + from, i * EDGE, len)
         } else {
-            let (y, ny) = part(1);
-            for j in 0..ny {
-                visit(((x + i) * edge + y + j) * edge + from, (i * EDGE + j) * EDGE, len);
-            }
+            (((x + i) * edge + y + j) * edge + from, (i * EDGE + j) * EDGE, len)
         }
-    }
+    })
 }
 
 /// Copies the nodes that the particles of `block` see into a tile: R0 in the first four lanes, `second` in the others.
 pub fn load_tile<const D: usize>(
-    grid: &Grid<D>,
-    second: &[Lanes],
+    isa: Isa,
+    (grid, second): (&Grid<D>, &[Lanes]),
     block: u32,
     edge: usize,
     tile: &mut [TileNode],
 ) {
-    for corner in 0..1 << D {
-        let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
-        shared_rows::<D>(edge, corner, |t, b, len| {
-            let r0 = &grid.velocity[source + b..][..len];
-            let r1 = &second[source + b..][..len];
-            for (TileNode(node), (r0, r1)) in tile[t..t + len].iter_mut().zip(r0.iter().zip(r1)) {
-                node[..4].copy_from_slice(r0);
-                node[4..].copy_from_slice(r1);
+    isa.dispatch(LoadTile(grid, second, &grid.forward[block as usize], edge, tile));
+}
+
+struct LoadTile<'a, const D: usize>(
+    &'a Grid<D>,
+    &'a [Lanes],
+    &'a Neighbours,
+    usize,
+    &'a mut [TileNode],
+);
+
+impl<const D: usize> Kernel for LoadTile<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(grid, second, around, edge, tile) = self;
+        for corner in 0..1 << D {
+            let source = around[corner] as usize * EDGE.pow(D as u32);
+            for (t, b, len) in shared_rows::<D>(edge, corner) {
+                let r0 = &grid.velocity[source + b..][..len];
+                let r1 = &second[source + b..][..len];
+                for ((node, r0), r1) in tile[t..t + len].iter_mut().zip(r0).zip(r1) {
+                    V::join(r0, r1).store_node(node);
+                }
             }
-        });
+        }
     }
 }

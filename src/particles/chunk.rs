@@ -19,10 +19,10 @@ pub struct ChunkMut<'a> {
     pub first: usize,
     /// Number of particles.
     pub len: usize,
-    /// Place of the first particle in `columns`.
-    start: usize,
-    columns: [&'a mut [f64]; MAX_COMPONENTS],
+    columns: Columns<'a>,
 }
+
+type Columns<'a> = [&'a mut [f64]; MAX_COMPONENTS];
 
 impl<'a> ChunkMut<'a> {
     /// The first `len` particles of a table with the given stride.
@@ -33,19 +33,19 @@ impl<'a> ChunkMut<'a> {
                 *to = &mut column[..len];
             }
         }
-        Self { layout, first: 0, len, start: 0, columns }
+        Self { layout, first: 0, len, columns }
     }
 
     /// One component of all particles of the run.
     #[inline(always)]
     pub fn column(&self, component: usize) -> &[f64] {
-        &self.columns[component][self.start..self.start + self.len]
+        self.columns[component]
     }
 
     /// One component of all particles of the run, to write.
     #[inline(always)]
     pub fn column_mut(&mut self, component: usize) -> &mut [f64] {
-        &mut self.columns[component][self.start..self.start + self.len]
+        self.columns[component]
     }
 
     /// `N` components of particle k.
@@ -66,7 +66,6 @@ impl<'a> ChunkMut<'a> {
             layout: self.layout,
             first: self.first + mid,
             len: self.len - mid,
-            start: 0,
             columns: right,
         };
         self.len = mid;
@@ -74,11 +73,17 @@ impl<'a> ChunkMut<'a> {
     }
 
     /// Calls `work` on one chunk of the run after the other.
-    pub fn for_each_chunk(mut self, mut work: impl FnMut(&mut Self)) {
-        let (first, len) = (self.first, self.len);
-        for start in (0..len).step_by(CHUNK) {
-            (self.first, self.start, self.len) = (first + start, start, CHUNK.min(len - start));
-            work(&mut self);
+    pub fn for_each_chunk(self, mut work: impl FnMut(&mut Self)) {
+        let (mut rest, end) = (self.columns, self.first + self.len);
+        let columns = std::array::from_fn(|_| Default::default());
+        let mut chunk = Self { columns, ..self };
+        for first in (self.first..end).step_by(CHUNK) {
+            (chunk.first, chunk.len) = (first, CHUNK.min(end - first));
+            for c in 0..self.layout.components() {
+                let (now, later) = std::mem::take(&mut rest[c]).split_at_mut(chunk.len);
+                (chunk.columns[c], rest[c]) = (now, later);
+            }
+            work(&mut chunk);
         }
     }
 }

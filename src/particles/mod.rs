@@ -11,9 +11,9 @@ pub use chunk::{CHUNK, ChunkMut, for_each_task};
 pub use fields::{FieldInfo, Layout};
 
 use crate::error::{Error, Result, Status};
+use crate::simd::LANES;
 
 const ALIGN: usize = 64;
-const LANES: usize = 8;
 
 /// A buffer of doubles whose first element is 64-byte aligned.
 #[derive(Debug, Default)]
@@ -24,10 +24,10 @@ pub struct Aligned {
 }
 
 impl Aligned {
-    /// A zeroed buffer of `len` doubles, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
+    /// A zeroed buffer of `len` doubles and at least [`LANES`] more behind them, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn zeroed(len: usize) -> Result<Self> {
         let mut memory = Vec::new();
-        let all = len + ALIGN / size_of::<f64>();
+        let all = len + ALIGN / size_of::<f64>() + LANES;
         reserve(&mut memory, all, "the columns of particles")?;
         memory.resize(all, 0.0);
         let start = memory.as_ptr().align_offset(ALIGN);
@@ -123,6 +123,13 @@ impl Particles {
     /// Some components in a row, with the padding between them, to write.
     pub fn columns_mut(&mut self, first: usize, components: usize) -> &mut [f64] {
         &mut self.data.as_mut_slice()[first * self.stride..(first + components) * self.stride]
+    }
+
+    /// `N` components of the particles `first..end`, each followed by [`LANES`] more doubles, so that eight can be read at a time.
+    pub fn read<const N: usize>(&self, component: usize, first: usize, end: usize) -> [&[f64]; N] {
+        let data = &self.data.memory[self.data.start..];
+        let column = |c: usize| &data[c * self.stride..][first..end + LANES];
+        std::array::from_fn(|c| column(component + c))
     }
 
     /// `N` components of particle k.

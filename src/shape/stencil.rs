@@ -36,7 +36,11 @@ impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
     /// The stencil at ξ (in units of the spacing).
     #[inline(always)]
     pub fn new<S: ShapeFunction<N>>(xi: [R; D]) -> Self {
-        Self { axes: std::array::from_fn(|d| S::axis(xi[d])) }
+        let mut axes = [S::axis(xi[0]); D];
+        for d in 1..D {
+            axes[d] = S::axis(xi[d]);
+        }
+        Self { axes }
     }
 }
 

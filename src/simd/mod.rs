@@ -12,6 +12,30 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::error::{Error, Result};
 
+/// An array whose element i is an expression of i, in one dimension or two: `each!(i in N => …)`, `each!(a in N, b in M => …)`.
+///
+/// In kernels it stands for `std::array::from_fn` and `map`: a closure is a function of its own, which the compiler may leave outside the
+/// copy that is made for an instruction set, at twenty times the cost.
+macro_rules! each {
+    ($i:ident in $n:expr => $value:expr) => {{
+        let mut out = [$crate::simd::Real::splat(0.0); $n];
+        for $i in 0..$n {
+            out[$i] = $value;
+        }
+        out
+    }};
+    ($i:ident in $n:expr, $j:ident in $m:expr => $value:expr) => {{
+        let mut out = [[$crate::simd::Real::splat(0.0); $m]; $n];
+        for $i in 0..$n {
+            for $j in 0..$m {
+                out[$i][$j] = $value;
+            }
+        }
+        out
+    }};
+}
+pub(crate) use each;
+
 /// Lanes of a [`Vector`].
 pub const LANES: usize = 8;
 
@@ -60,6 +84,8 @@ pub trait Vector: Real {
     fn load_node(node: &TileNode) -> Self;
     /// Writes both records of a node.
     fn store_node(self, node: &mut TileNode);
+    /// `low` in the first four lanes, `high` in the last four.
+    fn join(low: &[f64; 4], high: &[f64; 4]) -> Self;
     /// `low` in the first four lanes, `high` in the last four.
     fn halves(low: f64, high: f64) -> Self;
     /// Lane l of row r becomes lane r of row l.
@@ -118,7 +144,8 @@ impl Real for f64 {
     }
 }
 
-/// Work that is compiled once per instruction set. `run` must be `#[inline(always)]`, and so must what it calls with vectors.
+/// Work that is compiled once per instruction set. `run` must be `#[inline(always)]`, and so must what it calls with vectors; that
+/// excludes closures (see [`each`]).
 pub trait Kernel {
     /// What the work gives.
     type Output;

@@ -136,6 +136,10 @@ impl Vector for Portable {
         node.0 = self.0;
     }
     #[inline(always)]
+    fn join(low: &[f64; 4], high: &[f64; 4]) -> Self {
+        Self(from_fn(|l| if l < 4 { low[l] } else { high[l - 4] }))
+    }
+    #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {
         Self([low, low, low, low, high, high, high, high])
     }

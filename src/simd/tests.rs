@@ -34,6 +34,8 @@ impl Kernel for Operations {
         assert_eq!(y.sum(), b.iter().sum::<f64>());
         assert_eq!(V::halves(1.0, 2.0).to_array(), [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
         assert_eq!(V::load(&[0.0, 7.0, 1e6, 3.9, 5.0]).to_indices()[..5], [0, 7, 1_000_000, 3, 5]);
+        let [low, high] = [[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]];
+        assert_eq!(V::join(&low, &high).to_array(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
         let mut node = TileNode::default();
         x.store_node(&mut node);
         assert_eq!(V::load_node(&node).to_array(), a);

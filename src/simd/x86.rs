@@ -175,10 +175,7 @@ impl Vector for Avx2 {
         }
         let (low, high) = masks(from.len());
         // masked lanes are not read, so the second base may lie behind the slice
-        with!(Self(
-            _mm256_maskload_pd(base, low),
-            _mm256_maskload_pd(base.wrapping_add(4), high)
-        ))
+        with!(Self(_mm256_maskload_pd(base, low), _mm256_maskload_pd(base.wrapping_add(4), high)))
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
@@ -218,6 +215,10 @@ impl Vector for Avx2 {
             _mm256_store_pd(base, self.0);
             _mm256_store_pd(base.add(4), self.1);
         });
+    }
+    #[inline(always)]
+    fn join(low: &[f64; 4], high: &[f64; 4]) -> Self {
+        with!(Self(_mm256_loadu_pd(low.as_ptr()), _mm256_loadu_pd(high.as_ptr())))
     }
     #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {
@@ -334,17 +335,24 @@ impl Vector for Avx512 {
         with!(_mm512_store_pd(node.0.as_mut_ptr(), self.0)); // aligned to 64 bytes
     }
     #[inline(always)]
+    fn join(low: &[f64; 4], high: &[f64; 4]) -> Self {
+        with!({
+            let low = _mm512_castpd256_pd512(_mm256_loadu_pd(low.as_ptr()));
+            Self(_mm512_insertf64x4::<1>(low, _mm256_loadu_pd(high.as_ptr())))
+        })
+    }
+    #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {
         with!(Self(_mm512_mask_broadcastsd_pd(_mm512_set1_pd(low), 0xF0, _mm_set_sd(high))))
     }
     #[inline(always)]
     fn transpose(r: [Self; LANES]) -> [Self; LANES] {
         with!({
-            // pairs of rows, then pairs of pairs: t[r][l] holds rows 2r, 2r + 1
-            let low = |a: usize| _mm512_unpacklo_pd(r[a].0, r[a + 1].0);
-            let high = |a: usize| _mm512_unpackhi_pd(r[a].0, r[a + 1].0);
-            let even = [low(0), low(2), low(4), low(6)]; // columns 0, 2, 4, 6
-            let odd = [high(0), high(2), high(4), high(6)]; // columns 1, 3, 5, 7
+            let (mut even, mut odd) = ([r[0].0; 4], [r[0].0; 4]); // columns 0, 2, 4, 6 and 1, 3, 5, 7
+            for p in 0..4 {
+                even[p] = _mm512_unpacklo_pd(r[2 * p].0, r[2 * p + 1].0);
+                odd[p] = _mm512_unpackhi_pd(r[2 * p].0, r[2 * p + 1].0);
+            }
             let mut columns = [r[0]; LANES];
             for (first, t) in [(0, even), (1, odd)] {
                 let a = _mm512_shuffle_f64x2::<0x88>(t[0], t[1]); // 0 and 4 of rows 0 to 3

@@ -12,7 +12,7 @@ use crate::grid::tiles::{TileNode, load_tile};
 use crate::grid::{Grid, Key, Lanes};
 use crate::particles::ChunkMut;
 use crate::shape::stencil::{ShapeFunction, Stencil};
-use crate::simd::{Isa, Kernel, LANES, Vector};
+use crate::simd::{Isa, Kernel, LANES, Vector, each};
 use crate::step::particles_to_grid::{Weights, corners, span};
 use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
@@ -94,7 +94,7 @@ pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gat
             stride: scratch.stride,
         };
         if piece.loaded.replace(run.block) != Some(run.block) {
-            load_tile::<D>(grid, job.second(grid), run.block, piece.edge, tile);
+            load_tile::<D>(job.isa, (grid, job.second(grid)), run.block, piece.edge, tile);
         }
         (piece.gather)(&job, tile, chunk, scratch.velocity_gradient);
     }
@@ -124,42 +124,57 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherRun<'
     #[inline(always)]
     fn run<V: Vector>(self) {
         let Self(job, tile, chunk, gradient, _) = self;
-        let layout = chunk.layout;
-        for k in (job.range.0..job.range.1).step_by(LANES) {
-            let end = job.range.1.min(k + LANES);
+        let (first, last) = job.range;
+        for k in (first..last).step_by(LANES) {
+            let end = last.min(k + LANES);
             let x: [V; D] =
-                std::array::from_fn(|d| V::load(&chunk.column(layout.position + d)[k..end]));
+                each!(d in D => V::load(&chunk.column(chunk.layout.position + d)[k..end]));
             let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
             let received = receive(job, &stencil, tile, end - k);
-            if job.what != Gather::PositionAndGradient {
-                let mut v = received.velocity;
-                if job.transfer.is_affine() {
-                    let c = apic::affine(&received, S::MOMENT, job.space.spacing);
-                    for a in 0..D {
-                        for b in 0..D {
-                            c[a][b]
-                                .store(&mut chunk.column_mut(layout.affine + a * D + b)[k..end]);
-                        }
-                    }
-                } else {
-                    let old = std::array::from_fn(|a| {
-                        V::load(&chunk.column(layout.velocity + a)[k..end])
-                    });
-                    v = pic_flip::velocity(old, &received, job.pic_share);
-                }
-                for a in 0..D {
-                    v[a].store(&mut chunk.column_mut(layout.velocity + a)[k..end]);
+            if end == k + LANES {
+                keep::<V, S, N, D>(job, &received, x, chunk, gradient, (k, k + LANES)); // of known length
+            } else {
+                keep::<V, S, N, D>(job, &received, x, chunk, gradient, (k, end));
+            }
+        }
+    }
+}
+
+/// Updates the particles k to `end` from what they took.
+#[inline(always)]
+fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+    job: &GatherJob<D>,
+    received: &Received<V, D>,
+    x: [V; D],
+    chunk: &mut ChunkMut<'_>,
+    gradient: &mut [f64],
+    (k, end): (usize, usize),
+) {
+    let layout = chunk.layout;
+    if job.what != Gather::PositionAndGradient {
+        let mut v = received.velocity;
+        if job.transfer.is_affine() {
+            let c = apic::affine(received, S::MOMENT, job.space.spacing);
+            for a in 0..D {
+                for b in 0..D {
+                    c[a][b].store(&mut chunk.column_mut(layout.affine + a * D + b)[k..end]);
                 }
             }
-            if job.what != Gather::Velocity {
-                for a in 0..D {
-                    let moved = V::splat(job.dt).mul_add(received.velocity[a], x[a]);
-                    moved.store(&mut chunk.column_mut(layout.position + a)[k..end]);
-                    for b in 0..D {
-                        let at = (3 * a + b) * job.stride;
-                        received.gradient[a][b].store(&mut gradient[at + k..at + end]);
-                    }
-                }
+        } else {
+            let old = each!(a in D => V::load(&chunk.column(layout.velocity + a)[k..end]));
+            v = pic_flip::velocity(old, received, job.pic_share);
+        }
+        for a in 0..D {
+            v[a].store(&mut chunk.column_mut(layout.velocity + a)[k..end]);
+        }
+    }
+    if job.what != Gather::Velocity {
+        for a in 0..D {
+            let moved = V::splat(job.dt).mul_add(received.velocity[a], x[a]);
+            moved.store(&mut chunk.column_mut(layout.position + a)[k..end]);
+            for b in 0..D {
+                let at = (3 * a + b) * job.stride;
+                received.gradient[a][b].store(&mut gradient[at + k..at + end]);
             }
         }
     }
@@ -186,19 +201,18 @@ fn receive<V: Vector, const N: usize, const D: usize>(
         }
     }
     let sums = V::transpose(sums);
-    let slopes = slopes.map(V::transpose);
+    for d in 0..D {
+        slopes[d] = V::transpose(slopes[d]);
+    }
     let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
-    let velocity: [V; D] = std::array::from_fn(|a| sums[1 + a]);
-    let fraction = |b: usize| stencil.axes[b].fraction;
-    let moment = |a: usize, b: usize| (slopes[b][1 + a] - fraction(b) * velocity[a]) * h;
     let first = job.gradient_lane();
     Received {
-        velocity,
-        increment: std::array::from_fn(|a| sums[5 + a]),
-        moment: std::array::from_fn(|a| std::array::from_fn(|b| moment(a, b))),
-        gradient: std::array::from_fn(|a| {
-            std::array::from_fn(|b| slopes[b][first + a] * inverse)
+        velocity: each!(a in D => sums[1 + a]),
+        increment: each!(a in D => sums[5 + a]),
+        moment: each!(a in D, b in D => {
+            (slopes[b][1 + a] - stencil.axes[b].fraction * sums[1 + a]) * h
         }),
+        gradient: each!(a in D, b in D => slopes[b][first + a] * inverse),
     }
 }
 
@@ -211,33 +225,23 @@ fn collect<V: Vector, const N: usize, const D: usize>(
 ) -> (V, [V; D]) {
     let edge = EDGE + N - 1;
     let zero = V::splat(0.0);
-    let w = |d, n| weights.w::<V>(d, n, l);
-    let c = |d, n| weights.c::<V>(d, n, l);
-    let last: [(V, V); N] = std::array::from_fn(|n| (w(D - 1, n), c(D - 1, n)));
-    let row = |first: usize| {
-        let (mut sum, mut slope) = (zero, zero);
-        for (n, node) in nodes[first..first + N].iter().enumerate() {
-            let node = V::load_node(node);
-            sum = last[n].0.mul_add(node, sum);
-            slope = last[n].1.mul_add(node, slope);
-        }
-        (sum, slope)
-    };
+    let last = weights.axis::<V>(D - 1, l);
     let (mut sum, mut slopes) = (zero, [zero; D]);
     for i in 0..N {
-        let (wx, cx) = (w(0, i), c(0, i));
+        let (wx, cx) = weights.node::<V>(0, i, l);
         if D == 2 {
-            let (of_row, slope) = row(i * edge);
+            let (of_row, slope) = sum_of_row(&nodes[i * edge..][..N], &last);
             sum = wx.mul_add(of_row, sum);
             slopes[0] = cx.mul_add(of_row, slopes[0]);
             slopes[1] = wx.mul_add(slope, slopes[1]);
         } else {
             let (mut plane, mut along_y, mut along_z) = (zero, zero, zero);
             for j in 0..N {
-                let (of_row, slope) = row((i * edge + j) * edge);
-                plane = w(1, j).mul_add(of_row, plane);
-                along_y = c(1, j).mul_add(of_row, along_y);
-                along_z = w(1, j).mul_add(slope, along_z);
+                let (wy, cy) = weights.node::<V>(1, j, l);
+                let (of_row, slope) = sum_of_row(&nodes[(i * edge + j) * edge..][..N], &last);
+                plane = wy.mul_add(of_row, plane);
+                along_y = cy.mul_add(of_row, along_y);
+                along_z = wy.mul_add(slope, along_z);
             }
             sum = wx.mul_add(plane, sum);
             slopes[0] = cx.mul_add(plane, slopes[0]);
@@ -246,6 +250,17 @@ fn collect<V: Vector, const N: usize, const D: usize>(
         }
     }
     (sum, slopes)
+}
+
+#[inline(always)]
+fn sum_of_row<V: Vector, const N: usize>(nodes: &[TileNode], last: &[(V, V); N]) -> (V, V) {
+    let (mut sum, mut slope) = (V::splat(0.0), V::splat(0.0));
+    for (n, node) in nodes.iter().enumerate() {
+        let node = V::load_node(node);
+        sum = last[n].0.mul_add(node, sum);
+        slope = last[n].1.mul_add(node, slope);
+    }
+    (sum, slope)
 }
 
 /// Nodes of a stencil that a host's point sees: calls `visit` with node number and weight; false if a node is missing.

@@ -18,7 +18,7 @@ use crate::grid::tiles::{TileNode, Tiles, shared_rows};
 use crate::grid::{EDGE, Key, Lanes, NONE, Run};
 use crate::particles::Particles;
 use crate::shape::stencil::{ShapeFunction, Stencil};
-use crate::simd::{Isa, Kernel, LANES, Vector};
+use crate::simd::{Isa, Kernel, LANES, Vector, each};
 use crate::tensor::SYMMETRIC_INDEX;
 use crate::world::state::{Space, State};
 
@@ -46,14 +46,11 @@ pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, true);
     let State { grid, tiles, parallel, context, .. } = world;
-    let (velocity, force) = (&mut grid.velocity[..], &mut grid.force[..]);
-    let nodes = block_nodes(D);
     let pull = |((r0, f), around): ((&mut [Lanes], &mut [Lanes]), &Neighbours)| {
-        let sums = sum_of_tiles::<D>(context.isa(), tiles, around);
-        for (n, TileNode([m, x, y, z, _, fx, fy, fz])) in sums.into_iter().take(nodes).enumerate() {
-            (r0[n], f[n]) = ([m, x, y, z], [0.0, fx, fy, fz]);
-        }
+        context.isa().dispatch(Pull::<D> { tiles, around, low: r0, high: Some(f) });
     };
+    let nodes = block_nodes(D);
+    let (velocity, force) = (&mut grid.velocity[..], &mut grid.force[..]);
     if *parallel {
         let records = velocity.par_chunks_mut(nodes).zip(force.par_chunks_mut(nodes));
         records.zip(&grid.backward).for_each(pull);
@@ -67,13 +64,10 @@ pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
 pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, false);
     let State { grid, tiles, parallel, context, .. } = world;
-    let nodes = block_nodes(D);
     let pull = |(r1, around): (&mut [Lanes], &Neighbours)| {
-        let sums = sum_of_tiles::<D>(context.isa(), tiles, around);
-        for (n, TileNode([m, x, y, z, ..])) in sums.into_iter().take(nodes).enumerate() {
-            r1[n] = [m, x, y, z];
-        }
+        context.isa().dispatch(Pull::<D> { tiles, around, low: r1, high: None });
     };
+    let nodes = block_nodes(D);
     if *parallel {
         grid.increment.par_chunks_mut(nodes).zip(&grid.backward).for_each(pull);
     } else {
@@ -113,36 +107,40 @@ fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
 /// Most nodes of a block.
 const BLOCK_NODES: usize = block_nodes(3);
 
-/// What the tiles around a block hold for its nodes, added corner by corner.
-fn sum_of_tiles<const D: usize>(
-    isa: Isa,
-    tiles: &Tiles,
-    around: &Neighbours,
-) -> [TileNode; BLOCK_NODES] {
-    struct Sum<'a, const D: usize>(&'a Tiles, &'a Neighbours, &'a mut [TileNode]);
-    impl<const D: usize> Kernel for Sum<'_, D> {
-        type Output = ();
-        #[inline(always)]
-        fn run<V: Vector>(self) {
-            let Self(tiles, around, sums) = self;
-            for corner in 0..1 << D {
-                let source = around[corner];
-                let (first, end) =
-                    if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
-                for t in first..end {
-                    let tile = tiles.tile(t as usize, D);
-                    shared_rows::<D>(tiles.edge, corner, |from, to, len| {
-                        for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
-                            (V::load_node(sum) + V::load_node(node)).store_node(sum);
-                        }
-                    });
+/// Adds up, corner by corner, what the tiles around a block hold for its nodes, and writes the halves of each node.
+struct Pull<'a, const D: usize> {
+    tiles: &'a Tiles,
+    around: &'a Neighbours,
+    low: &'a mut [Lanes],
+    high: Option<&'a mut [Lanes]>,
+}
+
+impl<const D: usize> Kernel for Pull<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self { tiles, around, low, high } = self;
+        let mut sums = [TileNode::default(); BLOCK_NODES];
+        for corner in 0..1 << D {
+            let source = around[corner];
+            let (first, end) =
+                if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
+            for t in first..end {
+                let tile = tiles.tile(t as usize, D);
+                for (from, to, len) in shared_rows::<D>(tiles.edge, corner) {
+                    for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
+                        (V::load_node(sum) + V::load_node(node)).store_node(sum);
+                    }
                 }
             }
         }
+        for (to, TileNode([m, x, y, z, ..])) in low.iter_mut().zip(&sums) {
+            *to = [*m, *x, *y, *z];
+        }
+        for (to, TileNode([.., m, x, y, z])) in high.into_iter().flatten().zip(&sums) {
+            *to = [*m, *x, *y, *z];
+        }
     }
-    let mut sums = [TileNode::default(); BLOCK_NODES];
-    isa.dispatch(Sum::<D>(tiles, around, &mut sums));
-    sums
 }
 
 /// What the axes of eight stencils contribute to their nodes: w_n, and the two halves of c_n.
@@ -170,16 +168,20 @@ impl<const N: usize, const D: usize> Weights<N, D> {
         weights
     }
 
-    /// w_n of particle l in all lanes.
+    /// w_n in all lanes, and c_n, of particle l.
     #[inline(always)]
-    pub fn w<V: Vector>(&self, d: usize, n: usize, l: usize) -> V {
-        V::splat(self.w[d][n][l])
+    pub fn node<V: Vector>(&self, d: usize, n: usize, l: usize) -> (V, V) {
+        (V::splat(self.w[d][n][l]), V::halves(self.low[d][n][l], self.high[d][n][l]))
     }
 
-    /// c_n of particle l.
+    /// The same for all nodes of an axis.
     #[inline(always)]
-    pub fn c<V: Vector>(&self, d: usize, n: usize, l: usize) -> V {
-        V::halves(self.low[d][n][l], self.high[d][n][l])
+    pub fn axis<V: Vector>(&self, d: usize, l: usize) -> [(V, V); N] {
+        let mut nodes = [self.node(d, 0, l); N];
+        for n in 1..N {
+            nodes[n] = self.node(d, n, l);
+        }
+        nodes
     }
 }
 
@@ -224,19 +226,45 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<
     #[inline(always)]
     fn run<V: Vector>(self) {
         let Self(job, tile, _) = self;
-        let (particles, end) = (job.particles, job.run.end as usize);
-        let position = particles.layout.position;
-        for k in (job.run.first as usize..end).step_by(LANES) {
-            let x = std::array::from_fn(|d| V::load(&particles.column(position + d)[k..]));
+        let columns = Columns::<D>::new(job);
+        let count = (job.run.end - job.run.first) as usize;
+        for k in (0..count).step_by(LANES) {
+            let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
             let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
             let weights = Weights::new(&stencil, true);
             let corners = corners(&stencil, job.key);
-            let (value, columns) = payload(job, k, &stencil);
-            for l in 0..LANES.min(end - k) {
+            let (value, slopes) = payload(job, &columns, k, &stencil);
+            for l in 0..LANES.min(count - k) {
                 let nodes = &mut tile[corners[l] as usize..][..span(N, D)];
-                let columns = std::array::from_fn(|d| columns[d][l]);
-                spread(nodes, &weights, l, value[l], columns);
+                spread(nodes, &weights, l, value[l], each!(d in D => slopes[d][l]));
             }
+        }
+    }
+}
+
+/// The columns of a run that the scatter reads.
+struct Columns<'a, const D: usize> {
+    position: [&'a [f64]; D],
+    velocity: [&'a [f64]; D],
+    mass: &'a [f64],
+    volume: &'a [f64],
+    stress: [&'a [f64]; 6],
+    affine: Option<[[&'a [f64]; D]; D]>,
+}
+
+impl<'a, const D: usize> Columns<'a, D> {
+    fn new(job: &ScatterJob<'a, D>) -> Self {
+        let (particles, layout) = (job.particles, &job.particles.layout);
+        let (first, end) = (job.run.first as usize, job.run.end as usize);
+        let row = |a: usize| particles.read(layout.affine + a * D, first, end);
+        let affine = layout.deformation_gradient > layout.affine;
+        Self {
+            position: particles.read(layout.position, first, end),
+            velocity: particles.read(layout.velocity, first, end),
+            mass: particles.read::<1>(layout.mass, first, end)[0],
+            volume: particles.read::<1>(layout.volume, first, end)[0],
+            stress: particles.read(layout.stress, first, end),
+            affine: affine.then(|| std::array::from_fn(row)),
         }
     }
 }
@@ -245,38 +273,41 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<
 #[inline(always)]
 fn payload<V: Vector, const N: usize, const D: usize>(
     job: &ScatterJob<'_, D>,
+    columns: &Columns<'_, D>,
     k: usize,
     stencil: &Stencil<V, N, D>,
 ) -> ([V; LANES], [[V; LANES]; D]) {
-    let (particles, layout) = (job.particles, &job.particles.layout);
-    let load = |c: usize| V::load(&particles.column(c)[k..]);
     let zero = V::splat(0.0);
-    let mass = load(layout.mass);
+    let mass = V::load(&columns.mass[k..k + LANES]);
     let mut value = [zero; LANES];
     value[0] = mass;
     for a in 0..D {
-        value[1 + a] = mass * load(layout.velocity + a);
+        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]);
     }
-    let mut columns = [[zero; LANES]; D];
-    if layout.deformation_gradient > layout.affine {
+    let mut slopes = [[zero; LANES]; D];
+    if let Some(affine) = &columns.affine {
         let mh = mass * V::splat(job.space.spacing);
         for d in 0..D {
             for a in 0..D {
-                let slope = mh * load(layout.affine + a * D + d);
-                columns[d][1 + a] = slope;
+                let slope = mh * V::load(&affine[a][d][k..k + LANES]);
+                slopes[d][1 + a] = slope;
                 value[1 + a] = (-stencil.axes[d].fraction).mul_add(slope, value[1 + a]);
             }
         }
     }
     if job.forces {
-        let scale = load(layout.volume) * V::splat(-job.space.inverse);
+        let scale = V::load(&columns.volume[k..k + LANES]) * V::splat(-job.space.inverse);
         for d in 0..D {
             for a in 0..D {
-                columns[d][5 + a] = scale * load(layout.stress + SYMMETRIC_INDEX[a][d]);
+                let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];
+                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]);
             }
         }
     }
-    (V::transpose(value), columns.map(V::transpose))
+    for d in 0..D {
+        slopes[d] = V::transpose(slopes[d]);
+    }
+    (V::transpose(value), slopes)
 }
 
 /// Adds what particle l gives to the nodes of its stencil.
@@ -289,25 +320,32 @@ fn spread<V: Vector, const N: usize, const D: usize>(
     columns: [V; D],
 ) {
     let edge = EDGE + N - 1;
-    let w = |d, n| weights.w::<V>(d, n, l);
-    let c = |d, n| weights.c::<V>(d, n, l);
-    let last: [(V, V); N] = std::array::from_fn(|n| (w(D - 1, n), c(D - 1, n)));
-    let mut add = |first: usize, value: V, column: V| {
-        for (n, node) in nodes[first..first + N].iter_mut().enumerate() {
-            let sum = last[n].0.mul_add(value, V::load_node(node));
-            last[n].1.mul_add(column, sum).store_node(node);
-        }
-    };
+    let last = weights.axis::<V>(D - 1, l);
     for i in 0..N {
-        let plane = w(0, i).mul_add(value, c(0, i) * columns[0]);
+        let (wx, cx) = weights.node::<V>(0, i, l);
+        let plane = wx.mul_add(value, cx * columns[0]);
         if D == 2 {
-            add(i * edge, plane, w(0, i) * columns[1]);
+            add_row(&mut nodes[i * edge..][..N], &last, plane, wx * columns[1]);
         } else {
-            let (along_y, along_z) = (w(0, i) * columns[1], w(0, i) * columns[D - 1]);
+            let (along_y, along_z) = (wx * columns[1], wx * columns[D - 1]);
             for j in 0..N {
-                let row = w(1, j).mul_add(plane, c(1, j) * along_y);
-                add((i * edge + j) * edge, row, w(1, j) * along_z);
+                let (wy, cy) = weights.node::<V>(1, j, l);
+                let row = wy.mul_add(plane, cy * along_y);
+                add_row(&mut nodes[(i * edge + j) * edge..][..N], &last, row, wy * along_z);
             }
         }
+    }
+}
+
+#[inline(always)]
+fn add_row<V: Vector, const N: usize>(
+    nodes: &mut [TileNode],
+    last: &[(V, V); N],
+    value: V,
+    column: V,
+) {
+    for (n, node) in nodes.iter_mut().enumerate() {
+        let sum = last[n].0.mul_add(value, V::load_node(node));
+        last[n].1.mul_add(column, sum).store_node(node);
     }
 }

@@ -5,7 +5,7 @@
 //! exponential instead of the midpoint rule).
 
 use crate::material::{Kinematics, Rotation};
-use crate::simd::{Kernel, LANES, Vector};
+use crate::simd::{Kernel, LANES, Vector, each};
 use crate::tensor::{Rows, SYMMETRIC, exp, rotated, step_rotations};
 use crate::world::state::{ChunkStage, Piece};
 
@@ -26,8 +26,7 @@ pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
 /// The velocity gradients of eight points.
 #[inline(always)]
 fn gradient<V: Vector>(velocity_gradient: &[f64], stride: usize, k: usize) -> Rows<V> {
-    let component = |c: usize| V::load(&velocity_gradient[c * stride + k..][..LANES]);
-    std::array::from_fn(|a| std::array::from_fn(|b| component(3 * a + b)))
+    each!(a in 3, b in 3 => V::load(&velocity_gradient[(3 * a + b) * stride + k..][..LANES]))
 }
 
 struct Strain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
@@ -44,9 +43,11 @@ impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
             let end = chunk.len.min(k + LANES);
             let l = gradient::<V>(scratch.velocity_gradient, stride, k);
             let half = V::splat(0.5 * dt);
-            let increment = SYMMETRIC.map(|(a, b)| half * (l[a][b] + l[b][a]));
-            let mut stress: [V; 6] =
-                std::array::from_fn(|c| V::load(&chunk.column(layout.stress + c)[k..end]));
+            let increment = each!(c in 6 => {
+                let (a, b) = SYMMETRIC[c];
+                half * (l[a][b] + l[b][a])
+            });
+            let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
             if rotates {
                 stress = rotated(&step_rotations(&l, dt), stress);
             }
@@ -77,12 +78,11 @@ impl<const D: usize> Kernel for DeformationGradient<'_, '_, '_, D> {
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
             let l = gradient::<V>(scratch.velocity_gradient, stride, k);
-            let f: Rows<V> = std::array::from_fn(|a| {
-                std::array::from_fn(|b| V::load(&chunk.column(first + 3 * a + b)[k..end]))
-            });
+            let f: Rows<V> =
+                each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]));
             for a in 0..3 {
                 for b in 0..3 {
-                    let lf = (0..3).fold(V::splat(0.0), |sum, e| l[a][e].mul_add(f[e][b], sum));
+                    let lf = l[a][0] * f[0][b] + l[a][1] * f[1][b] + l[a][2] * f[2][b];
                     let new = lf.mul_add(V::splat(dt), f[a][b]);
                     let c = 3 * a + b;
                     new.store(&mut scratch.deformation_gradient[c * stride + k..][..LANES]);
@@ -137,21 +137,25 @@ impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
 /// A vector (3), symmetric (6) or general (9) tensor, rotated; a scalar as it is.
 #[inline(always)]
 fn rotated_state<V: Vector>(r: &Rows<V>, value: [V; 9], components: usize) -> [V; 9] {
-    let sum = |terms: [V; 3]| terms[0] + terms[1] + terms[2];
     let mut out = value;
     match components {
         3 => {
             for a in 0..3 {
-                out[a] = sum(std::array::from_fn(|b| r[a][b] * value[b]));
+                out[a] = r[a][0] * value[0] + r[a][1] * value[1] + r[a][2] * value[2];
             }
         }
-        6 => out[..6].copy_from_slice(&rotated(r, std::array::from_fn(|c| value[c]))),
+        6 => {
+            let six = rotated(r, each!(c in 6 => value[c]));
+            out = each!(c in 9 => if c < 6 { six[c] } else { value[c] });
+        }
         9 => {
-            let m: Rows<V> = std::array::from_fn(|a| {
-                std::array::from_fn(|b| sum(std::array::from_fn(|e| r[a][e] * value[3 * e + b])))
+            let m: Rows<V> = each!(a in 3, b in 3 => {
+                r[a][0] * value[b] + r[a][1] * value[3 + b] + r[a][2] * value[6 + b]
             });
-            for c in 0..9 {
-                out[c] = sum(std::array::from_fn(|e| m[c / 3][e] * r[c % 3][e]));
+            for a in 0..3 {
+                for b in 0..3 {
+                    out[3 * a + b] = m[a][0] * r[b][0] + m[a][1] * r[b][1] + m[a][2] * r[b][2];
+                }
             }
         }
         _ => {}

@@ -90,9 +90,6 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
         let (mut speed, mut nothing, mut negative) = (zero, zero, 0);
         for k in (0..n).step_by(LANES) {
             let end = n.min(k + LANES);
-            let own = |chunk: &crate::particles::ChunkMut<'_>, c: usize| {
-                V::load(&chunk.column(c)[k..end])
-            };
             let (mut work, mut trace) = (zero, zero);
             for c in 0..6 {
                 let at = c * stride + k..c * stride + end;
@@ -104,19 +101,20 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
                 trace = if c < 3 { trace + strain } else { trace };
                 nothing = stress.mul_add(zero, nothing);
             }
-            let volume = own(chunk, layout.volume);
+            let volume = V::load(&chunk.column(layout.volume)[k..end]);
             let energy = if s.energy.is_empty() {
                 let change = work * volume * (V::splat(1.0) - V::splat(0.5) * trace);
-                own(chunk, layout.strain_energy) + change
+                V::load(&chunk.column(layout.strain_energy)[k..end]) + change
             } else {
                 V::load(&s.energy[k..end]) * volume
             };
             energy.store(&mut chunk.column_mut(layout.strain_energy)[k..end]);
             let mut square = zero;
             for d in 0..D {
-                let v = own(chunk, layout.velocity + d);
+                let v = V::load(&chunk.column(layout.velocity + d)[k..end]);
                 square = v.mul_add(v, square);
-                nothing = own(chunk, layout.position + d).mul_add(zero, nothing);
+                nothing =
+                    V::load(&chunk.column(layout.position + d)[k..end]).mul_add(zero, nothing);
             }
             let c = V::load(&s.wave_speed[k..end]);
             negative |= c.less_than(zero);
@@ -124,15 +122,17 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
             speed = speed.max(total);
             nothing = (total + volume + energy).mul_add(zero, nothing);
             for c in layout.strain_energy + 1..layout.state {
-                nothing = own(chunk, c).mul_add(zero, nothing);
+                nothing = V::load(&chunk.column(c)[k..end]).mul_add(zero, nothing);
             }
             for c in 0..layout.state_components() {
                 let state = V::load(&s.state1[c * stride + k..c * stride + end]);
                 state.store(&mut chunk.column_mut(layout.state + c)[k..end]);
                 nothing = state.mul_add(zero, nothing);
             }
-            for output in [&*s.diffusivity, &*s.dt_factor].into_iter().filter(|o| !o.is_empty()) {
-                nothing = V::load(&output[k..end]).mul_add(zero, nothing);
+            for output in [&*s.diffusivity, &*s.dt_factor] {
+                if !output.is_empty() {
+                    nothing = V::load(&output[k..end]).mul_add(zero, nothing);
+                }
             }
         }
         (speed.largest(), negative == 0 && nothing.sum().is_finite())

@@ -5,7 +5,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::simd::{Real, Vector};
+use crate::simd::{Real, Vector, each};
 
 /// A 3x3 matrix.
 pub type Mat3 = Matrix3<f64>;
@@ -73,9 +73,10 @@ fn square<R: Real>(w: &[R; 3]) -> R {
 
 #[inline(always)]
 fn series<R: Real>(t: R) -> (R, R) {
-    let (one, c) = (R::splat(1.0), |n: f64| t * R::splat(1.0 / n));
-    let a = one - c(6.0) * (one - c(20.0) * (one - c(42.0)));
-    let b = R::splat(0.5) - c(24.0) * (one - c(30.0) * (one - c(56.0)));
+    let one = R::splat(1.0);
+    let c = each!(n in 6 => t * R::splat(1.0 / [6.0, 20.0, 42.0, 24.0, 30.0, 56.0][n]));
+    let a = one - c[0] * (one - c[1] * (one - c[2]));
+    let b = R::splat(0.5) - c[3] * (one - c[4] * (one - c[5]));
     (a, b)
 }
 
@@ -108,11 +109,14 @@ pub fn rotate(r: &Mat3, s: [f64; 6]) -> [f64; 6] {
 /// The same for one tensor or eight.
 #[inline(always)]
 pub fn rotated<R: Real>(r: &Rows<R>, s: [R; 6]) -> [R; 6] {
-    let product = |x: [R; 3], y: [R; 3]| x[2].mul_add(y[2], x[1].mul_add(y[1], x[0] * y[0]));
-    let row = |b: usize| SYMMETRIC_INDEX[b].map(|c| s[c]);
-    let s = [row(0), row(1), row(2)];
-    let m = r.map(|r| [product(r, s[0]), product(r, s[1]), product(r, s[2])]);
-    SYMMETRIC.map(|(a, b)| product(m[a], r[b]))
+    let s = each!(a in 3, b in 3 => s[SYMMETRIC_INDEX[a][b]]);
+    let m = each!(a in 3, b in 3 => product(r[a], s[b]));
+    each!(c in 6 => product(m[SYMMETRIC[c].0], r[SYMMETRIC[c].1]))
+}
+
+#[inline(always)]
+fn product<R: Real>(x: [R; 3], y: [R; 3]) -> R {
+    x[2].mul_add(y[2], x[1].mul_add(y[1], x[0] * y[0]))
 }
 
 /// e^x; within round-off, and fast where |x| ≤ ¼ in all lanes.
@@ -122,9 +126,11 @@ pub fn exp<V: Vector>(x: V) -> V {
         return V::from_array(x.to_array().map(f64::exp));
     }
     // Taylor's series up to x^12 / 12!
-    (1..=12).rev().fold(V::splat(1.0), |sum, n| {
-        (x * V::splat(1.0 / f64::from(n))).mul_add(sum, V::splat(1.0))
-    })
+    let mut sum = V::splat(1.0);
+    for n in 0..12 {
+        sum = (x * V::splat(1.0 / f64::from(12 - n))).mul_add(sum, V::splat(1.0));
+    }
+    sum
 }
 
 #[cfg(test)]

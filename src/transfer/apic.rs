@@ -4,7 +4,7 @@
 //! splines D = h²/4; for linear shapes D is singular at nodes and C = Σ v ⊗ ∇w is taken instead.
 
 use super::Received;
-use crate::simd::Real;
+use crate::simd::{Real, each};
 
 /// Affine matrix of a particle. `moment` is D in units of h², `spacing` is h [m].
 #[inline(always)]
@@ -16,7 +16,7 @@ pub fn affine<R: Real, const D: usize>(
     match moment {
         Some(moment) => {
             let inverse = R::splat(1.0 / (moment * spacing * spacing));
-            received.moment.map(|row| row.map(|b| b * inverse))
+            each!(a in D, b in D => received.moment[a][b] * inverse)
         }
         None => received.gradient,
     }

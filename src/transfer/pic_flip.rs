@@ -5,7 +5,7 @@
 //! J. U. Brackbill, H. M. Ruppel, J. Comput. Phys. 65 (1986) 314–343, doi:10.1016/0021-9991(86)90211-1.
 
 use super::Received;
-use crate::simd::Real;
+use crate::simd::{Real, each};
 
 /// Share of PIC in a step of `dt` [s] at the rate `pic_rate` [1/s].
 pub fn pic_share(pic_rate: f64, dt: f64) -> f64 {
@@ -20,7 +20,7 @@ pub fn velocity<R: Real, const D: usize>(
     pic_share: f64,
 ) -> [R; D] {
     let (pic, flip) = (R::splat(pic_share), R::splat(1.0 - pic_share));
-    std::array::from_fn(|a| flip * (v[a] + received.increment[a]) + pic * received.velocity[a])
+    each!(a in D => flip * (v[a] + received.increment[a]) + pic * received.velocity[a])
 }
 
 #[cfg(test)]

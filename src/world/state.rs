@@ -9,7 +9,7 @@ use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
-use crate::simd::{Isa, Real};
+use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
 use crate::step::time_step::Limits;
@@ -44,7 +44,7 @@ impl<const D: usize> Space<D> {
     #[inline(always)]
     pub fn to_units<R: Real>(&self, x: [R; D]) -> [R; D] {
         let inverse = R::splat(self.inverse);
-        std::array::from_fn(|d| (x[d] - R::splat(self.origin[d])) * inverse)
+        each!(d in D => (x[d] - R::splat(self.origin[d])) * inverse)
     }
 }
 
