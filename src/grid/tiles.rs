@@ -101,10 +101,17 @@ impl Tiles {
         self.edge.pow(dimension as u32)
     }
 
-    /// The nodes of tile t.
-    pub fn tile(&self, t: usize, dimension: usize) -> &[TileNode] {
-        let n = self.tile_nodes(dimension);
-        &self.nodes[t * n..(t + 1) * n]
+    /// The tiles of the block at `corner` of a neighbourhood.
+    #[inline(always)]
+    pub fn around<const D: usize>(
+        &self,
+        neighbours: Option<&Neighbours>,
+        corner: usize,
+    ) -> impl Iterator<Item = &[TileNode]> {
+        let block = neighbours.map_or(NONE, |n| n[corner]) as usize;
+        let (first, end) = self.of_block.get(block).copied().unwrap_or_default();
+        let n = self.tile_nodes(D);
+        self.nodes[first as usize * n..end as usize * n].chunks_exact(n)
     }
 
     /// Memory [bytes].

@@ -109,6 +109,15 @@ pub trait Vector: Real {
     }
 }
 
+/// Asks the memory for the line that holds element `index`, which may lie behind the end, so that it is there when it is needed.
+#[inline(always)]
+pub fn prefetch<T>(list: &[T], index: usize) {
+    #[cfg(target_arch = "x86_64")]
+    x86::prefetch(list.as_ptr().wrapping_add(index));
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (list, index);
+}
+
 impl Real for f64 {
     #[inline(always)]
     fn splat(x: f64) -> Self {

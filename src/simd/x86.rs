@@ -44,6 +44,12 @@ pub(super) unsafe fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx512>()
 }
 
+/// Asks the memory for a line; any address will do.
+#[inline(always)]
+pub(super) fn prefetch<T>(address: *const T) {
+    with!(_mm_prefetch::<_MM_HINT_T0>(address.cast()));
+}
+
 /// Two registers of four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256d, __m256d);

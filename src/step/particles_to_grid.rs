@@ -15,10 +15,10 @@ use rayon::prelude::*;
 use crate::grid::blocks::Neighbours;
 use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
-use crate::grid::{EDGE, Key, Lanes, NONE, Run};
+use crate::grid::{EDGE, Key, Lanes, Run};
 use crate::particles::Particles;
 use crate::shape::stencil::{ShapeFunction, Stencil};
-use crate::simd::{Isa, Kernel, LANES, Vector, each};
+use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
 use crate::world::state::{Space, State};
 
@@ -46,17 +46,16 @@ pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, true);
     let State { grid, tiles, parallel, context, .. } = world;
-    let pull = |((r0, f), around): ((&mut [Lanes], &mut [Lanes]), &Neighbours)| {
-        context.isa().dispatch(Pull::<D> { tiles, around, low: r0, high: Some(f) });
+    let (isa, all, nodes) = (context.isa(), &grid.backward[..], block_nodes(D));
+    let pull = |(block, (r0, f)): (usize, (&mut [Lanes], &mut [Lanes]))| {
+        isa.dispatch(Pull::<D> { tiles, all, block, low: r0, high: Some(f) });
     };
-    let nodes = block_nodes(D);
-    let (velocity, force) = (&mut grid.velocity[..], &mut grid.force[..]);
     if *parallel {
-        let records = velocity.par_chunks_mut(nodes).zip(force.par_chunks_mut(nodes));
-        records.zip(&grid.backward).for_each(pull);
+        let records = grid.velocity.par_chunks_mut(nodes).zip(grid.force.par_chunks_mut(nodes));
+        records.enumerate().for_each(pull);
     } else {
-        let records = velocity.chunks_mut(nodes).zip(force.chunks_mut(nodes));
-        records.zip(&grid.backward).for_each(pull);
+        let records = grid.velocity.chunks_mut(nodes).zip(grid.force.chunks_mut(nodes));
+        records.enumerate().for_each(pull);
     }
 }
 
@@ -64,14 +63,14 @@ pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
 pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, false);
     let State { grid, tiles, parallel, context, .. } = world;
-    let pull = |(r1, around): (&mut [Lanes], &Neighbours)| {
-        context.isa().dispatch(Pull::<D> { tiles, around, low: r1, high: None });
+    let (isa, all, nodes) = (context.isa(), &grid.backward[..], block_nodes(D));
+    let pull = |(block, r1): (usize, &mut [Lanes])| {
+        isa.dispatch(Pull::<D> { tiles, all, block, low: r1, high: None });
     };
-    let nodes = block_nodes(D);
     if *parallel {
-        grid.increment.par_chunks_mut(nodes).zip(&grid.backward).for_each(pull);
+        grid.increment.par_chunks_mut(nodes).enumerate().for_each(pull);
     } else {
-        grid.increment.chunks_mut(nodes).zip(&grid.backward).for_each(pull);
+        grid.increment.chunks_mut(nodes).enumerate().for_each(pull);
     }
 }
 
@@ -107,10 +106,12 @@ fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
 /// Most nodes of a block.
 const BLOCK_NODES: usize = block_nodes(3);
 
-/// Adds up, corner by corner, what the tiles around a block hold for its nodes, and writes the halves of each node.
+/// Adds up, corner by corner, what the tiles around a block hold for its nodes, and writes the halves of each node. Tiles have left
+/// the caches since they were filled: those of the next block are asked for while this one is summed.
 struct Pull<'a, const D: usize> {
     tiles: &'a Tiles,
-    around: &'a Neighbours,
+    all: &'a [Neighbours],
+    block: usize,
     low: &'a mut [Lanes],
     high: Option<&'a mut [Lanes]>,
 }
@@ -119,14 +120,17 @@ impl<const D: usize> Kernel for Pull<'_, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self { tiles, around, low, high } = self;
+        let Self { tiles, all, block, low, high } = self;
         let mut sums = [TileNode::default(); BLOCK_NODES];
         for corner in 0..1 << D {
-            let source = around[corner];
-            let (first, end) =
-                if source == NONE { (0, 0) } else { tiles.of_block[source as usize] };
-            for t in first..end {
-                let tile = tiles.tile(t as usize, D);
+            for tile in tiles.around::<D>(all.get(block + 1), corner).take(1) {
+                for (from, _, len) in shared_rows::<D>(tiles.edge, corner) {
+                    for n in 0..len {
+                        prefetch(tile, from + n);
+                    }
+                }
+            }
+            for tile in tiles.around::<D>(all.get(block), corner) {
                 for (from, to, len) in shared_rows::<D>(tiles.edge, corner) {
                     for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
                         (V::load_node(sum) + V::load_node(node)).store_node(sum);
@@ -229,6 +233,7 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<
         let columns = Columns::<D>::new(job);
         let count = (job.run.end - job.run.first) as usize;
         for k in (0..count).step_by(LANES) {
+            columns.prefetch(k + AHEAD);
             let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
             let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
             let weights = Weights::new(&stencil, true);
@@ -241,6 +246,9 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<
         }
     }
 }
+
+/// How many particles before its use a line of a column is asked for.
+const AHEAD: usize = 32;
 
 /// The columns of a run that the scatter reads.
 struct Columns<'a, const D: usize> {
@@ -265,6 +273,27 @@ impl<'a, const D: usize> Columns<'a, D> {
             volume: particles.read::<1>(layout.volume, first, end)[0],
             stress: particles.read(layout.stress, first, end),
             affine: affine.then(|| std::array::from_fn(row)),
+        }
+    }
+
+    /// Asks the memory for the particles from k on.
+    #[inline(always)]
+    fn prefetch(&self, k: usize) {
+        for d in 0..D {
+            prefetch(self.position[d], k);
+            prefetch(self.velocity[d], k);
+        }
+        for c in 0..6 {
+            prefetch(self.stress[c], k);
+        }
+        prefetch(self.mass, k);
+        prefetch(self.volume, k);
+        if let Some(affine) = &self.affine {
+            for d in 0..D {
+                for a in 0..D {
+                    prefetch(affine[a][d], k);
+                }
+            }
         }
     }
 }
