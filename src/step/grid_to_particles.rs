@@ -12,7 +12,7 @@ use crate::grid::tiles::{TileNode, load_tile};
 use crate::grid::{Grid, Key, Lanes};
 use crate::particles::ChunkMut;
 use crate::shape::stencil::{ShapeFunction, Stencil};
-use crate::simd::{Isa, Kernel, LANES, Vector, each};
+use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::step::particles_to_grid::{Weights, corners, span};
 use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
@@ -127,6 +127,9 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherRun<'
         let (first, last) = job.range;
         for k in (first..last).step_by(LANES) {
             let end = last.min(k + LANES);
+            for c in 0..chunk.layout.components() {
+                prefetch(chunk.column(c), k + AHEAD);
+            }
             let x: [V; D] =
                 each!(d in D => V::load(&chunk.column(chunk.layout.position + d)[k..end]));
             let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
@@ -139,6 +142,9 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherRun<'
         }
     }
 }
+
+/// How many particles before its use a line of a column is asked for, here and in the stages that follow.
+const AHEAD: usize = 64;
 
 /// Updates the particles k to `end` from what they took.
 #[inline(always)]
