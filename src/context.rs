@@ -33,11 +33,15 @@ impl Context {
     /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
     /// number, or a `LAHAR_SIMD` that is unknown or that the processor lacks; [`Status::Threads`] if the system gives no threads.
     pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
+        Self::with_isa(threads, Isa::of_environment()?)
+    }
+
+    /// The same with a given instruction set.
+    pub fn with_isa(threads: Option<usize>, isa: Isa) -> Result<Arc<Context>> {
         let threads = match threads {
             Some(threads) => checked_threads(threads, "the thread count")?,
             None => threads_of_environment()?,
         };
-        let isa = Isa::of_environment()?;
         let log = Arc::new(LogQueue::default());
         let pool = if threads > 1 { Some(Pool::new(threads, &log)?) } else { None };
         let used = (0..threads).map(|_| AtomicBool::new(false)).collect();

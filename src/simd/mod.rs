@@ -8,6 +8,7 @@ mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::ffi::CStr;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::error::{Error, Result};
@@ -195,13 +196,13 @@ impl Level {
         }
     }
 
-    fn name(self) -> &'static str {
+    fn name(self) -> &'static CStr {
         match self {
-            Self::Scalar => "scalar",
+            Self::Scalar => c"scalar",
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => "avx2",
+            Self::Avx2 => c"avx2",
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => "avx512",
+            Self::Avx512 => c"avx512",
         }
     }
 }
@@ -220,15 +221,16 @@ impl Isa {
 
     /// The one with this name, or an error if it is unknown or the processor lacks it.
     pub fn named(name: &str) -> Result<Self> {
-        let known = |levels: &mut dyn Iterator<Item = Level>| {
-            levels.map(Level::name).collect::<Vec<_>>().join(", ")
+        let list = |levels: &mut dyn Iterator<Item = Self>| {
+            levels.map(Self::name).collect::<Vec<_>>().join(", ")
         };
-        let Some(level) = LEVELS.iter().copied().find(|level| level.name() == name) else {
-            let list = known(&mut LEVELS.iter().copied());
+        let mut known = LEVELS.iter().copied().map(Self);
+        let Some(Self(level)) = known.clone().find(|isa| isa.name() == name) else {
+            let list = list(&mut known);
             return Err(Error::invalid(format!("LAHAR_SIMD must be one of {list}, got `{name}`")));
         };
         if !level.is_supported() {
-            let list = known(&mut Self::all().map(|isa| isa.0));
+            let list = list(&mut Self::all());
             return Err(Error::invalid(format!(
                 "LAHAR_SIMD asks for `{name}`, which this processor does not have (it has {list})"
             )));
@@ -246,6 +248,11 @@ impl Isa {
 
     /// "scalar", "avx2" or "avx512".
     pub fn name(self) -> &'static str {
+        self.name_c().to_str().unwrap_or_default()
+    }
+
+    /// The same.
+    pub fn name_c(self) -> &'static CStr {
         self.0.name()
     }
 

@@ -141,8 +141,10 @@ impl<const D: usize> Kernel for Pull<'_, D> {
         for (to, TileNode([m, x, y, z, ..])) in low.iter_mut().zip(&sums) {
             *to = [*m, *x, *y, *z];
         }
-        for (to, TileNode([.., m, x, y, z])) in high.into_iter().flatten().zip(&sums) {
-            *to = [*m, *x, *y, *z];
+        if let Some(high) = high {
+            for (to, TileNode([.., m, x, y, z])) in high.iter_mut().zip(&sums) {
+                *to = [*m, *x, *y, *z];
+            }
         }
     }
 }
