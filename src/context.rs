@@ -94,7 +94,9 @@ impl Context {
             Some(pool) => pool.worker(),
             None => Some(0),
         };
-        if let Some(used) = worker.and_then(|w| self.used.get(w)) {
+        if let Some(used) = worker.and_then(|w| self.used.get(w))
+            && !used.load(Ordering::Relaxed)
+        {
             used.store(true, Ordering::Relaxed);
         }
     }

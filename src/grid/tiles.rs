@@ -4,10 +4,13 @@
 //! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
 
 use super::blocks::Neighbours;
-use super::{EDGE, Grid, Lanes, NONE};
+use super::{EDGE, Grid, Lanes, NONE, room};
 use crate::error::Result;
-use crate::particles::reserve;
+use crate::particles::{refill, reserve_exact};
 use crate::simd::{Isa, Kernel, Vector};
+
+/// What memory is for, if there is none.
+const WHAT: &str = "the tiles of the grid";
 
 /// A node of a tile: [m, mv; –, f] on the way to the grid, two records of it on the way back.
 pub use crate::simd::TileNode;
@@ -15,7 +18,7 @@ pub use crate::simd::TileNode;
 /// Particles of one body that stand in one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Position of the block.
+    /// Slot of the block.
     pub block: u32,
     /// Position of the body in the world.
     pub body: u32,
@@ -33,13 +36,15 @@ const TILE_PARTICLES: u32 = 2048;
 pub struct Tiles {
     /// Nodes along the edge of a tile.
     pub edge: usize,
-    /// Runs in the order of blocks, then bodies, cut at the size of a tile.
+    /// Runs in the Morton order of blocks, then of bodies, cut at the size of a tile.
     pub runs: Vec<Run>,
     /// For each tile its runs, as a range of `runs`.
     pub tiles: Vec<(u32, u32)>,
-    /// For each block its tiles, as a range of `tiles`.
+    /// For each tile the number of particles in the tiles before it, and behind the last the number of all.
+    pub start: Vec<u32>,
+    /// For each slot of the grid its tiles, as a range of `tiles`.
     pub of_block: Vec<(u32, u32)>,
-    /// Node records of all tiles.
+    /// Node records of all tiles, and of some more that may be needed.
     pub nodes: Vec<TileNode>,
 }
 
@@ -49,16 +54,19 @@ impl Tiles {
         Self { edge: EDGE + shape_nodes - 1, ..Self::default() }
     }
 
-    /// Deals the runs of all bodies out to tiles. `blocks` is the number of active blocks, `dimension` the number of axes.
+    /// Deals the runs of all bodies out to tiles. `place` gives for each slot of the grid its place in Morton order; `dimension` is
+    /// the number of axes.
     ///
     /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn assign(
         &mut self,
-        runs: impl Iterator<Item = Run>,
-        blocks: usize,
+        runs: impl Iterator<Item = Run> + Clone,
+        place: &[u32],
         dimension: usize,
     ) -> Result<()> {
-        self.runs.clear();
+        let pieces: usize =
+            runs.clone().map(|r| (r.end - r.first).div_ceil(TILE_PARTICLES) as usize).sum();
+        refill(&mut self.runs, pieces, WHAT)?;
         for mut run in runs {
             while run.end - run.first > TILE_PARTICLES {
                 self.runs.push(Run { end: run.first + TILE_PARTICLES, ..run });
@@ -66,11 +74,15 @@ impl Tiles {
             }
             self.runs.push(run);
         }
-        self.runs.sort_unstable_by_key(|r| (r.block, r.body, r.first));
-        self.tiles.clear();
-        self.of_block.clear();
-        self.of_block.resize(blocks, (0, 0));
-        let (mut block, mut load) = (NONE, 0);
+        let order = |run: &Run| (place[run.block as usize], run.body, run.first);
+        if !self.runs.is_sorted_by_key(order) {
+            self.runs.sort_unstable_by_key(order);
+        }
+        refill(&mut self.tiles, pieces, WHAT)?;
+        refill(&mut self.start, pieces + 1, WHAT)?;
+        refill(&mut self.of_block, place.len(), WHAT)?;
+        self.of_block.resize(place.len(), (0, 0));
+        let (mut block, mut load, mut all) = (NONE, 0, 0);
         for (r, run) in self.runs.iter().enumerate() {
             let r = r as u32;
             let size = run.end - run.first;
@@ -79,18 +91,25 @@ impl Tiles {
                 let of_block = &mut self.of_block[run.block as usize];
                 *of_block = (if run.block == block { of_block.0 } else { tile }, tile + 1);
                 self.tiles.push((r, r));
+                self.start.push(all);
                 (block, load) = (run.block, 0);
             }
             load += size;
+            all += size;
             if let Some(tile) = self.tiles.last_mut() {
                 tile.1 = r + 1;
             }
         }
-        let nodes = self.tiles.len() * self.tile_nodes(dimension);
+        self.start.push(all);
+        self.fit_nodes(dimension)
+    }
+
+    /// Room for the nodes of all tiles; memory is given back when less than a quarter is needed.
+    fn fit_nodes(&mut self, dimension: usize) -> Result<()> {
+        let nodes = room(self.tiles.len()) * self.tile_nodes(dimension);
         if nodes > self.nodes.len() || 4 * nodes < self.nodes.len() {
-            self.nodes.clear();
-            self.nodes.shrink_to(2 * nodes);
-            reserve(&mut self.nodes, nodes, "the tiles of the grid")?;
+            self.nodes = Vec::new();
+            reserve_exact(&mut self.nodes, nodes, WHAT)?;
             self.nodes.resize(nodes, TileNode::default());
         }
         Ok(())
@@ -119,6 +138,7 @@ impl Tiles {
         self.nodes.capacity() * size_of::<TileNode>()
             + self.runs.capacity() * size_of::<Run>()
             + (self.tiles.capacity() + self.of_block.capacity()) * size_of::<(u32, u32)>()
+            + self.start.capacity() * size_of::<u32>()
     }
 }
 

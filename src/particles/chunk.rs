@@ -20,20 +20,27 @@ pub struct ChunkMut<'a> {
     /// Number of particles.
     pub len: usize,
     columns: Columns<'a>,
+    moved: &'a mut [u64],
 }
 
 type Columns<'a> = [&'a mut [f64]; MAX_COMPONENTS];
 
 impl<'a> ChunkMut<'a> {
-    /// The first `len` particles of a table with the given stride.
-    pub fn new(layout: Layout, len: usize, data: &'a mut [f64], stride: usize) -> Self {
+    /// The first `len` particles of a table with the given stride, and their marks (see [`Particles::moved`](super::Particles::moved)).
+    pub fn new(
+        layout: Layout,
+        len: usize,
+        data: &'a mut [f64],
+        stride: usize,
+        moved: &'a mut [u64],
+    ) -> Self {
         let mut columns = std::array::from_fn(|_| Default::default());
         if stride > 0 {
             for (to, column) in columns.iter_mut().zip(data.chunks_exact_mut(stride)) {
                 *to = &mut column[..len];
             }
         }
-        Self { layout, first: 0, len, columns }
+        Self { layout, first: 0, len, columns, moved }
     }
 
     /// One component of all particles of the run.
@@ -48,12 +55,24 @@ impl<'a> ChunkMut<'a> {
         self.columns[component]
     }
 
+    /// Marks the particles k + l that may have left their block, for each bit l of `bits`.
+    #[inline(always)]
+    pub fn mark_moved(&mut self, k: usize, bits: u8) {
+        if bits != 0 {
+            let bits = u128::from(bits) << (k % 64); // of two words
+            self.moved[k / 64] |= bits as u64;
+            if let Some(next) = self.moved.get_mut(k / 64 + 1) {
+                *next |= (bits >> 64) as u64;
+            }
+        }
+    }
+
     /// `N` components of particle k.
     pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
         std::array::from_fn(|c| self.column(first + c)[k])
     }
 
-    /// The run in two, the first part with `mid` particles.
+    /// The run in two, the first part with `mid` particles, a multiple of 64.
     fn split(mut self, mid: usize) -> (Self, Self) {
         let n = self.layout.components();
         let mut right = std::array::from_fn(|_| Default::default());
@@ -62,7 +81,10 @@ impl<'a> ChunkMut<'a> {
             self.columns[c] = a;
             right[c] = b;
         }
+        let (moved, later) = self.moved.split_at_mut(mid / 64);
+        self.moved = moved;
         let right = Self {
+            moved: later,
             layout: self.layout,
             first: self.first + mid,
             len: self.len - mid,
@@ -74,15 +96,17 @@ impl<'a> ChunkMut<'a> {
 
     /// Calls `work` on one chunk of the run after the other.
     pub fn for_each_chunk(self, mut work: impl FnMut(&mut Self)) {
-        let (mut rest, end) = (self.columns, self.first + self.len);
+        let (mut rest, mut marks, end) = (self.columns, self.moved, self.first + self.len);
         let columns = std::array::from_fn(|_| Default::default());
-        let mut chunk = Self { columns, ..self };
+        let mut chunk = Self { columns, moved: &mut [], ..self };
         for first in (self.first..end).step_by(CHUNK) {
             (chunk.first, chunk.len) = (first, CHUNK.min(end - first));
             for c in 0..self.layout.components() {
                 let (now, later) = std::mem::take(&mut rest[c]).split_at_mut(chunk.len);
                 (chunk.columns[c], rest[c]) = (now, later);
             }
+            let (now, later) = marks.split_at_mut(chunk.len.div_ceil(64));
+            (chunk.moved, marks) = (now, later);
             work(&mut chunk);
         }
     }

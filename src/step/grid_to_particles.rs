@@ -175,15 +175,30 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
         }
     }
     if job.what != Gather::Velocity {
+        let new = each!(a in D => V::splat(job.dt).mul_add(received.velocity[a], x[a]));
+        chunk.mark_moved(k, outside(job, new, end - k));
         for a in 0..D {
-            let moved = V::splat(job.dt).mul_add(received.velocity[a], x[a]);
-            moved.store(&mut chunk.column_mut(layout.position + a)[k..end]);
+            new[a].store(&mut chunk.column_mut(layout.position + a)[k..end]);
             for b in 0..D {
                 let at = (3 * a + b) * job.stride;
                 received.gradient[a][b].store(&mut gradient[at + k..at + end]);
             }
         }
     }
+}
+
+/// Bit l is set if particle l of `count` is not in the block of its run any more.
+#[inline(always)]
+fn outside<V: Vector, const D: usize>(job: &GatherJob<D>, x: [V; D], count: usize) -> u8 {
+    let xi = job.space.to_units(x);
+    let mut inside = u8::MAX;
+    for d in 0..D {
+        let place = xi[d] - V::splat(job.space.first_offset);
+        let lowest = f64::from(job.key[d]) * EDGE as f64;
+        let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
+        inside &= !place.less_than(low) & place.less_than(high);
+    }
+    !inside & (u8::MAX >> (LANES - count))
 }
 
 /// What `count` particles take from the nodes of their stencils.

@@ -74,14 +74,15 @@ pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
     }
 }
 
+/// Fills the tiles.
 fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
     let (space, kernel) = (world.space(), world.kernels.scatter);
     let State { bodies, grid, tiles, context, .. } = world;
     let nodes = tiles.tile_nodes(D);
-    let used = &mut tiles.nodes[..nodes * tiles.tiles.len()];
-    let fill = |(tile, runs): (&mut [TileNode], &(u32, u32))| {
+    let fill = |tile: &mut [TileNode], t: usize| {
         tile.fill(TileNode::default());
-        for run in &tiles.runs[runs.0 as usize..runs.1 as usize] {
+        let (first, end) = tiles.tiles[t];
+        for run in &tiles.runs[first as usize..end as usize] {
             let job = ScatterJob {
                 isa: context.isa(),
                 particles: &bodies[run.body as usize].particles,
@@ -93,14 +94,43 @@ fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
             kernel(&job, tile);
         }
     };
+    let all = &mut tiles.nodes[..nodes * tiles.tiles.len()];
     if world.parallel {
-        used.par_chunks_mut(nodes).zip(&tiles.tiles).for_each(|job| {
+        let work = |tile: &mut [TileNode], t: usize| {
             context.mark_worker();
-            fill(job);
-        });
+            fill(tile, t);
+        };
+        for_each_tile(all, (nodes, 0), &tiles.start, &work);
     } else {
-        used.chunks_mut(nodes).zip(&tiles.tiles).for_each(fill);
+        all.chunks_mut(nodes).enumerate().for_each(|(t, tile)| fill(tile, t));
     }
+}
+
+/// Particles that one thread takes at least.
+const GRAIN: u32 = 2048;
+
+/// Calls `work` with every tile and its number, in parallel. The work is split in halves by particles, `start` being their running
+/// count, so that a thin layer and a dense heap balance.
+fn for_each_tile(
+    tiles: &mut [TileNode],
+    (nodes, first): (usize, usize),
+    start: &[u32],
+    work: &(impl Fn(&mut [TileNode], usize) + Sync),
+) {
+    let count = tiles.len() / nodes;
+    let (low, high) = (start[first], start[first + count]);
+    if count < 2 || high - low <= GRAIN {
+        tiles.chunks_mut(nodes).enumerate().for_each(|(t, tile)| work(tile, first + t));
+        return;
+    }
+    let middle = low + (high - low) / 2;
+    let half = start[first + 1..first + count].partition_point(|before| *before < middle) + 1;
+    let half = half.min(count - 1);
+    let (left, right) = tiles.split_at_mut(half * nodes);
+    rayon::join(
+        || for_each_tile(left, (nodes, first), start, work),
+        || for_each_tile(right, (nodes, first + half), start, work),
+    );
 }
 
 /// Most nodes of a block.

@@ -390,9 +390,9 @@ impl World {
 
     /// Integer coordinates of the active blocks; z is 0 in two dimensions.
     pub fn grid_blocks(&self) -> Vec<[i64; 3]> {
-        on!(&self, s => s.grid.keys().iter().map(|key| {
+        on!(&self, s => s.grid.order().iter().map(|slot| {
             let mut out = [0; 3];
-            key.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
+            s.grid.keys()[*slot as usize].iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
             out
         }).collect())
     }

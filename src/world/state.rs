@@ -93,6 +93,8 @@ pub struct State<const D: usize> {
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
     pub regroup: bool,
+    /// Positions may have changed outside a step since the last sort, without marks of moved particles.
+    pub rescan: bool,
     /// Whether steps use the threads of the context.
     pub parallel: bool,
     /// Limits of the next time step; None if the host changed something since they were found.
@@ -121,6 +123,7 @@ impl<const D: usize> State<D> {
             impulses: Vec::new(),
             sorting: Sorting::default(),
             regroup: true,
+            rescan: true,
             parallel: false,
             limits: None,
             time: 0.0,
@@ -130,7 +133,7 @@ impl<const D: usize> State<D> {
         };
         if world.options.grid_policy == GridPolicy::Static {
             let blocks = world.blocks_of_box()?;
-            world.grid.set_blocks(&blocks, false)?;
+            world.grid.set_owners(&blocks, false)?;
         }
         Ok(world)
     }
@@ -194,7 +197,7 @@ impl<const D: usize> State<D> {
 
     /// To be called when particles came or went.
     pub fn particles_changed(&mut self) {
-        self.regroup = true;
+        (self.regroup, self.rescan) = (true, true);
         self.limits = None;
         self.parallel = self.context.threads() > 1 && self.particle_count() >= SERIAL_BELOW;
     }
