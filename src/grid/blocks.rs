@@ -204,7 +204,8 @@ impl<const D: usize> Grid<D> {
     /// Makes exactly the blocks that the tiles of these owners reach active; with `keep`, the present ones too. An owner
     /// may be named more than once. Slots of blocks that stay may change if most slots are free.
     ///
-    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the grid as it was.
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were or as they shall be; the call can be
+    /// repeated.
     pub fn set_owners(&mut self, owners: &[Key<D>], keep: bool) -> Result<()> {
         self.reach(owners)?;
         let gone = self.order.iter().filter(|slot| !keep && !self.reached[**slot as usize]).count();
