@@ -1,6 +1,8 @@
 //! Every kernel equals the textbook: instruction set × dimension × shape × transfer × order, random particles, walls, damping and gravity.
 
 use lahar::boundary::{Wall, WallKind};
+use lahar::context::Context;
+use lahar::error::Status;
 use lahar::material::{Material, StressBatch};
 use lahar::shape::ShapeKind;
 use lahar::simd::Isa;
@@ -14,6 +16,7 @@ use lahar::world::scratch::with_scratch;
 use nalgebra::{SMatrix, SVector};
 
 use crate::setup::{Random, add_points, context_with, elastic, read, world, write};
+use crate::support::in_child;
 
 const H: f64 = 0.3;
 
@@ -162,4 +165,22 @@ fn every_kernel_equals_the_textbook_on_two_threads() {
         2 => one_step_agrees::<2>(options, isa, 2, 6000),
         _ => one_step_agrees::<3>(options, isa, 2, 6000),
     });
+}
+
+#[test]
+fn the_environment_forces_an_instruction_set() {
+    let name = "kernels::the_environment_forces_an_instruction_set";
+    if in_child(name, &[("LAHAR_SIMD", "scalar")]) {
+        assert_eq!(Context::new(None).expect("a context").isa().name(), "scalar");
+    }
+}
+
+#[test]
+fn an_unknown_instruction_set_is_refused() {
+    let name = "kernels::an_unknown_instruction_set_is_refused";
+    if in_child(name, &[("LAHAR_SIMD", "avx1024")]) {
+        let error = Context::new(None).err().expect("no such instruction set");
+        assert_eq!(error.status, Status::InvalidArgument);
+        assert!(error.message.contains("avx1024") && error.message.contains("scalar"), "{error}");
+    }
 }
