@@ -49,6 +49,12 @@ impl<'a> ChunkMut<'a> {
         self.columns[component]
     }
 
+    /// All components.
+    #[inline(always)]
+    pub fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        self.columns.iter().take(self.layout.components()).map(|column| &**column)
+    }
+
     /// One component of all particles of the run, to write.
     #[inline(always)]
     pub fn column_mut(&mut self, component: usize) -> &mut [f64] {
