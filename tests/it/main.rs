@@ -17,6 +17,7 @@ mod invariants;
 mod kernels;
 mod plugins;
 mod readme;
+mod register;
 mod sparse_grid;
 mod tank;
 mod tidy;
