@@ -63,11 +63,15 @@ pub fn force(level: Level) -> bool {
 
 #[cold]
 fn decide() -> Level {
-    let named = std::env::var("LAHAR_SIMD").ok();
-    let wanted = Level::ALL.into_iter().find(|level| named.as_deref() == Some(level.name()));
-    let level = wanted.filter(|level| level.is_available()).unwrap_or_else(highest);
+    let level = level_of(std::env::var("LAHAR_SIMD").ok().as_deref());
     CHOSEN.store(level as u8, Ordering::Relaxed);
     level
+}
+
+/// The level of this name if there is one and the processor has it, else the processor's highest.
+fn level_of(name: Option<&str>) -> Level {
+    let named = Level::ALL.into_iter().find(|level| name == Some(level.name()));
+    named.filter(|level| level.is_available()).unwrap_or_else(highest)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -135,6 +139,17 @@ fn run_avx512(work: impl Work) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_gives_its_level_and_anything_else_the_processors_highest() {
+        let best = highest();
+        for level in Level::ALL {
+            assert_eq!(level_of(Some(level.name())), if level <= best { level } else { best });
+        }
+        for name in [None, Some(""), Some("sse9"), Some("AVX2 ")] {
+            assert_eq!(level_of(name), best);
+        }
+    }
 
     #[test]
     fn levels_up_to_the_processors_can_be_forced() {
