@@ -8,10 +8,12 @@ use crate::table::{Kinematics, Output, state_components};
 /// compiler sees loops of a fixed length over arrays that do not overlap. Measured: 8 are unrolled, 32 are no faster.
 const GROUP: usize = 16;
 
-/// One component of the points of a group.
-type Column = [f64; GROUP];
+/// One component of the points of a group; aligned, so that no vector straddles two lines of the cache.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Column<T>([T; GROUP]);
 
-const EMPTY: Column = [0.0; GROUP];
+const EMPTY: Column<f64> = Column([0.0; GROUP]);
 
 /// A point before the step. What the model has not declared is zero. `S` is the number of components of all state
 /// variables.
@@ -94,11 +96,11 @@ impl Batch<'_> {
 
 /// A group of points before the step.
 struct Before<'a, const S: usize> {
-    strain_increment: &'a mut [Column; 6],
-    gradient: &'a mut [Column; 9],
-    stress0: &'a mut [Column; 6],
-    state0: &'a mut [Column; S],
-    inputs: &'a mut [Column; MAX_INPUTS],
+    strain_increment: &'a mut [Column<f64>; 6],
+    gradient: &'a mut [Column<f64>; 9],
+    stress0: &'a mut [Column<f64>; 6],
+    state0: &'a mut [Column<f64>; S],
+    inputs: &'a mut [Column<f64>; MAX_INPUTS],
 }
 
 impl<const S: usize> Before<'_, S> {
@@ -119,7 +121,7 @@ impl<const S: usize> Before<'_, S> {
         read(batch.stress0, stride, first, count, self.stress0);
         read(batch.state0, stride, first, count, self.state0);
         for i in 0..M::INPUTS.len() {
-            self.inputs[i][..count].copy_from_slice(&batch.inputs[i][first..][..count]);
+            self.inputs[i].0[..count].copy_from_slice(&batch.inputs[i][first..][..count]);
         }
     }
 
@@ -137,7 +139,7 @@ impl<const S: usize> Before<'_, S> {
             _ => point.gradient = at(self.gradient, k),
         }
         for i in 0..M::INPUTS.len() {
-            point.inputs[i] = self.inputs[i][k];
+            point.inputs[i] = self.inputs[i].0[k];
         }
         point
     }
@@ -150,29 +152,29 @@ fn read<const C: usize>(
     stride: usize,
     first: usize,
     count: usize,
-    columns: &mut [Column; C],
+    columns: &mut [Column<f64>; C],
 ) {
     for c in 0..C {
-        columns[c][..count].copy_from_slice(&data[c * stride + first..][..count]);
+        columns[c].0[..count].copy_from_slice(&data[c * stride + first..][..count]);
     }
 }
 
 #[inline(always)]
-fn at<const C: usize>(columns: &[Column; C], k: usize) -> [f64; C] {
+fn at<const C: usize>(columns: &[Column<f64>; C], k: usize) -> [f64; C] {
     let mut values = [0.0; C];
     for c in 0..C {
-        values[c] = columns[c][k];
+        values[c] = columns[c].0[k];
     }
     values
 }
 
 /// A group of points after the step.
 struct After<const S: usize> {
-    stress1: [Column; 6],
-    state1: [Column; S],
-    wave_speed: Column,
-    diffusivity: Column,
-    status: [i32; GROUP],
+    stress1: [Column<f64>; 6],
+    state1: [Column<f64>; S],
+    wave_speed: Column<f64>,
+    diffusivity: Column<f64>,
+    status: Column<i32>,
 }
 
 impl<const S: usize> After<S> {
@@ -183,23 +185,23 @@ impl<const S: usize> After<S> {
             state1: [EMPTY; S],
             wave_speed: EMPTY,
             diffusivity: EMPTY,
-            status: [0; GROUP],
+            status: Column([0; GROUP]),
         }
     }
 
     #[inline(always)]
     fn set<M: Model>(&mut self, k: usize, point: &Updated<S>) {
         for c in 0..6 {
-            self.stress1[c][k] = point.stress1[c];
+            self.stress1[c].0[k] = point.stress1[c];
         }
         for c in 0..S {
-            self.state1[c][k] = point.state1[c];
+            self.state1[c].0[k] = point.state1[c];
         }
-        self.wave_speed[k] = point.wave_speed;
+        self.wave_speed.0[k] = point.wave_speed;
         if const { M::OUTPUTS.has(Output::DIFFUSIVITY) } {
-            self.diffusivity[k] = point.diffusivity;
+            self.diffusivity.0[k] = point.diffusivity;
         }
-        self.status[k] = point.status as i32;
+        self.status.0[k] = point.status as i32;
     }
 
     #[inline(always)]
@@ -219,8 +221,8 @@ impl<const S: usize> After<S> {
 
 /// Copies the first `count` values to their place; an absent array takes nothing.
 #[inline(always)]
-fn write<T: Copy>(column: &[T; GROUP], data: &mut [T], at: usize, count: usize) {
+fn write<T: Copy>(column: &Column<T>, data: &mut [T], at: usize, count: usize) {
     if !data.is_empty() {
-        data[at..][..count].copy_from_slice(&column[..count]);
+        data[at..][..count].copy_from_slice(&column.0[..count]);
     }
 }
