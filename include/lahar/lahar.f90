@@ -333,6 +333,16 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_context_load_plugin
 
+    function lahar_context_register_plugin(context, plugin, index) &
+        bind(c, name="lahar_context_register_plugin") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: context
+      type(c_ptr), value :: plugin
+      integer(c_int64_t), intent(inout), optional :: index(*)
+      integer(c_int32_t) :: answer
+    end function lahar_context_register_plugin
+
     function lahar_context_plugin_count(context, plugins) &
         bind(c, name="lahar_context_plugin_count") result(answer)
       import :: c_int32_t, c_int64_t, c_ptr
@@ -932,6 +942,7 @@ module lahar
   public :: lahar_context_set_log
   public :: lahar_log_stderr
   public :: lahar_context_load_plugin
+  public :: lahar_context_register_plugin
   public :: lahar_context_plugin_count
   public :: lahar_context_plugin_info
   public :: lahar_last_error_message

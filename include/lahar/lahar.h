@@ -40,6 +40,9 @@
 extern "C" {
 #endif
 
+// The table of a plugin, defined in lahar_plugin.h.
+struct lahar_plugin_desc;
+
 /* ---- status ------------------------------------------------------------------------------------
  *
  * Statuses: what every function answers.
@@ -212,7 +215,7 @@ typedef struct lahar_plugin_info {
     const char *licence;
     // Where to find it; may be empty.
     const char *url;
-    // The file that was loaded.
+    // The file that was loaded; of a registered plugin the id in brackets.
     const char *path;
 } lahar_plugin_info;
 
@@ -282,6 +285,17 @@ void lahar_log_stderr(int32_t level, const char *message, void *user);
 lahar_status lahar_context_load_plugin(lahar_context *context,
                                        const char *name_or_path,
                                        int64_t *plugin);
+
+// Takes a plugin that is linked into the program; a table that is registered already is found again.
+//
+// `plugin`: its table (see lahar_plugin.h), which must stay as it is until the process ends, with all that it points to.
+// The plugin's entry is not called; a plugin that logs or sets error texts needs the host table that the entry gets.
+// `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI.
+// Thread: any
+lahar_status lahar_context_register_plugin(lahar_context *context,
+                                           const struct lahar_plugin_desc *plugin,
+                                           int64_t *index);
 
 // Number of plugins that are loaded into the context.
 //

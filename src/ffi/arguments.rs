@@ -66,6 +66,12 @@ pub(super) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Result<&
     Ok(unsafe { &*pointer })
 }
 
+/// A pointer that others check further.
+pub(super) fn not_null<T>(pointer: *const T, name: &str) -> Result<*const T> {
+    check(pointer, name)?;
+    Ok(pointer)
+}
+
 /// A NUL-terminated text in UTF-8.
 pub(super) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a str> {
     check(pointer, name)?;

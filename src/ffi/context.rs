@@ -1,13 +1,15 @@
 //! Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
 
 use super::arguments::{
-    Grows, c_string, count, handle_out, index, optional_out, out, struct_out, text,
+    Grows, c_string, count, handle_out, index, not_null, optional_out, out, struct_out, text,
 };
 use super::cells::ContextCell;
 use super::entry::{call_host, entry, quiet_entry};
 use super::status::lahar_status;
 use crate::context::{Context, LogLevel, LogSink};
 use crate::error::{Error, Result};
+use crate::plugin::StaticTable;
+use lahar_plugin_abi::lahar_plugin_desc;
 use std::ffi::{CStr, c_char, c_void};
 use std::io::Write;
 use std::sync::Arc;
@@ -61,7 +63,7 @@ pub struct lahar_plugin_info {
     pub licence: *const c_char,
     /// Where to find it; may be empty.
     pub url: *const c_char,
-    /// The file that was loaded.
+    /// The file that was loaded; of a registered plugin the id in brackets.
     pub path: *const c_char,
 }
 
@@ -251,6 +253,34 @@ pub unsafe extern "C" fn lahar_context_load_plugin(
         };
         let position = cell.context.load_plugin(name)?;
         plugin.inspect(|plugin| plugin.set(position as i64));
+        Ok(())
+    })
+}
+
+/// Takes a plugin that is linked into the program; a table that is registered already is found again.
+///
+/// `plugin`: its table (see lahar_plugin.h), which must stay as it is until the process ends, with all that it points to.
+/// The plugin's entry is not called; a plugin that logs or sets error texts needs the host table that the entry gets.
+/// `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_register_plugin(
+    context: *mut lahar_context,
+    plugin: *const lahar_plugin_desc,
+    index: *mut i64,
+) -> lahar_status {
+    entry("lahar_context_register_plugin", |scope| {
+        // SAFETY: the host passes NULL or a live handle, a table that stays, and a writable integer.
+        let (cell, table, index) = unsafe {
+            (
+                scope.context(context)?,
+                StaticTable::new(not_null(plugin, "plugin")?),
+                optional_out(index, "index")?,
+            )
+        };
+        let position = cell.context.register_table(table)?;
+        index.inspect(|index| index.set(position as i64));
         Ok(())
     })
 }

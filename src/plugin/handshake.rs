@@ -142,7 +142,7 @@ impl Place<'_> {
 ///
 /// # Safety
 ///
-/// `desc` came from the entry of our major: it is a table of the ABI whose pointers are NULL or valid for the life of
+/// `desc` came from the entry of our major or from a host that registers it: it is a table of the ABI whose pointers are NULL or valid for the life of
 /// the process.
 pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) -> Result<Plugin> {
     let place = Place { path, at: "plugin table".into() };

@@ -2,6 +2,10 @@
  * the header says so. A test compares the list of NULL_REFUSED and NULL_ALLOWED with the header, so none is forgotten. */
 #include "check.h"
 
+#include "../bad_plugins/minimal.h"
+
+static void spoil(void) {}
+
 static lahar_world *world;
 
 /* Function, argument, arguments of the call. */
@@ -37,6 +41,9 @@ static void context_functions(void) {
   NULL_IGNORED(lahar_log_stderr, user, (LAHAR_LOG_ERROR, NULL, NULL));
   NULL_REFUSED(lahar_context_load_plugin, context, (NULL, "x", &integer));
   NULL_REFUSED(lahar_context_load_plugin, name_or_path, (context, NULL, &integer));
+  NULL_REFUSED(lahar_context_register_plugin, context, (NULL, lahar_plugin_entry_v1(NULL), &integer));
+  NULL_REFUSED(lahar_context_register_plugin, plugin, (context, NULL, &integer));
+  NULL_ALLOWED(lahar_context_register_plugin, index, (context, lahar_plugin_entry_v1(NULL), NULL));
   NULL_REFUSED(lahar_context_plugin_count, context, (NULL, &integer));
   NULL_REFUSED(lahar_context_plugin_count, plugins, (context, NULL));
   plugin.struct_size = sizeof plugin;

@@ -18,6 +18,7 @@ mod kernels;
 mod order;
 mod plugins;
 mod readme;
+mod register;
 mod sparse_grid;
 mod tank;
 mod tidy;

@@ -57,11 +57,13 @@ fn read(path: &Path) -> Result<String, String> {
 }
 
 fn host_header(root: &Path) -> Result<String, String> {
-    let mut text = format!("{HOST_INTRODUCTION}{}", opening("LAHAR_H"));
+    let mut text = format!("{HOST_INTRODUCTION}{}{PLUGIN_TABLE}", opening("LAHAR_H"));
     for section in SECTIONS {
         let path = root.join(format!("src/ffi/{section}.rs"));
         write_section(&mut text, section, &path, &[])?;
     }
+    // A typedef of lahar_plugin.h, which may be included after this header or not at all.
+    text = text.replace("const lahar_plugin_desc *", "const struct lahar_plugin_desc *");
     let layout = read(&root.join("src/ffi/layout.rs"))?;
     text += &asserts(&layout, "super::public")?;
     text += &closing("LAHAR_H");
@@ -233,6 +235,9 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
  */
 
 "#;
+
+const PLUGIN_TABLE: &str =
+    "\n// The table of a plugin, defined in lahar_plugin.h.\nstruct lahar_plugin_desc;\n";
 
 const PLUGIN_INTRODUCTION: &str = r#"/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
  *

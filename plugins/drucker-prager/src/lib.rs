@@ -8,10 +8,10 @@
 mod cone;
 
 use cone::{Cone, ConeKind};
-use lahar_plugin::tensor::{contract, deviator, trace};
+use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Columns, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
+    PointLaw, PointStatus, State, Updated, c_text,
 };
 use std::ffi::CStr;
 
@@ -29,19 +29,30 @@ pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
     PLUGIN.desc()
 }
 
+/// `n` points for a bench: sheared under pressure, all of them in plastic flow, different in each point.
+pub fn sample(n: usize) -> Result<Driver, String> {
+    let named = [
+        ("youngs_modulus", 1.0e7),
+        ("poissons_ratio", 0.3),
+        ("friction_angle", 30.0),
+        ("cohesion", 0.0),
+        ("dilation_angle", 5.0),
+    ];
+    let mut driver = Driver::new(ModelTable::of::<DruckerPrager>().desc(), &named, n)?;
+    for k in 0..n {
+        let e = 1e-4 * (1.0 + (k % 7) as f64);
+        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 30.0 * e, -e, 0.0]);
+        driver.set_stress(k, [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
+    }
+    Ok(driver)
+}
+
 /// Constants of an instance: moduli and strengths [Pa], slopes of the cone and of the flow potential [-].
 pub struct DruckerPrager {
     bulk_modulus: f64,
     shear_modulus: f64,
     cone: Cone,
     tension_cutoff: f64,
-}
-
-/// State of a point.
-#[derive(Clone, Copy)]
-struct History {
-    equivalent_plastic_strain: f64,
-    opened_volumetric_strain: f64,
 }
 
 impl Model for DruckerPrager {
@@ -129,45 +140,12 @@ impl Model for DruckerPrager {
         Ok(Self { bulk_modulus, shear_modulus, cone, tension_cutoff: cutoff })
     }
 
+    #[inline(always)]
     fn update(&self, batch: &mut Batch<'_>) {
-        let n = batch.n();
-        let Columns {
-            strain_increment,
-            stress0,
-            state0,
-            mut stress1,
-            state1,
-            inputs,
-            wave_speed,
-            status,
-            ..
-        } = batch.columns::<2>();
-        let density = inputs[0];
-        for k in 0..n {
-            let strain = strain_increment.map(|e| e[k]);
-            let start = stress0.map(|s| s[k]);
-            let history = History {
-                equivalent_plastic_strain: state0[0][k],
-                opened_volumetric_strain: state0[1][k],
-            };
-            let (stress, history) = self.step(start, history, strain);
-            let c = self.wave_speed_of(density[k]);
-            for (column, value) in stress1.iter_mut().zip(stress) {
-                column[k] = value;
-            }
-            state1[0][k] = history.equivalent_plastic_strain;
-            state1[1][k] = history.opened_volumetric_strain;
-            wave_speed[k] = c;
-            // Sums of absolute values: finite if and only if every term is (short of overflow, which fails as well).
-            let magnitude =
-                [stress, start, strain].iter().flatten().fold(c, |sum, x| sum + x.abs());
-            let history = history.equivalent_plastic_strain + history.opened_volumetric_strain;
-            if !(magnitude + history).is_finite() {
-                status[k] = PointStatus::Failed as i32;
-            }
-        }
+        batch.for_each_point(self);
     }
 
+    #[inline(always)]
     fn wave_speed(&self, batch: &mut Batch<'_>) {
         let density = batch.input(0);
         for k in 0..batch.n() {
@@ -178,74 +156,91 @@ impl Model for DruckerPrager {
 
 impl DruckerPrager {
     /// Elastic speed; also of opened points, which may close at any time.
+    #[inline(always)]
     fn wave_speed_of(&self, density: f64) -> f64 {
         ((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / density).sqrt()
     }
 
-    /// One point, one step.
-    fn step(
-        &self,
-        stress0: [f64; 6],
-        mut history: History,
-        strain: [f64; 6],
-    ) -> ([f64; 6], History) {
-        if history.opened_volumetric_strain == 0.0 {
-            return self.load(stress0, history, strain);
-        }
-        let volumetric = trace(strain);
-        let gap = history.opened_volumetric_strain + volumetric;
-        if gap >= 0.0 {
-            history.equivalent_plastic_strain += equivalent(strain);
-            history.opened_volumetric_strain = gap;
-            return ([0.0; 6], history);
-        }
-        // The gap closes inside the step: what remains of the increment loads a point without stress.
-        let rest = gap / volumetric;
-        history.equivalent_plastic_strain += (1.0 - rest) * equivalent(strain);
-        history.opened_volumetric_strain = 0.0;
-        self.load([0.0; 6], history, strain.map(|e| rest * e))
-    }
-
-    /// A closed point: elastic trial, return to the cone, tension cut-off.
-    fn load(
-        &self,
-        stress0: [f64; 6],
-        mut history: History,
-        strain: [f64; 6],
-    ) -> ([f64; 6], History) {
+    /// A closed point: elastic trial from `stress0` with the deviator and the trace of a strain, return to the cone,
+    /// tension cut-off.
+    #[inline(always)]
+    fn load(&self, stress0: [f64; 6], strain_deviator: [f64; 6], volumetric: f64) -> Loaded {
         let (bulk, shear) = (self.bulk_modulus, self.shear_modulus);
-        let strain_deviator = deviator(strain);
-        let stress0_deviator = deviator(stress0);
+        let mean0 = trace(stress0) / 3.0;
+        let [xx, yy, zz, xy, yz, zx] = stress0;
+        let stress0_deviator = [xx - mean0, yy - mean0, zz - mean0, xy, yz, zx];
         let s: [f64; 6] =
             std::array::from_fn(|c| stress0_deviator[c] + 2.0 * shear * strain_deviator[c]);
-        let p = -trace(stress0) / 3.0 - bulk * trace(strain);
+        let p = -mean0 - bulk * volumetric;
         let q = (1.5 * contract(s, s)).sqrt();
 
         let Cone { slope, strength, dilation } = self.cone;
         let excess = q - slope * p - strength;
-        let multiplier =
-            if excess > 0.0 { excess / (3.0 * shear + bulk * slope * dilation) } else { 0.0 };
+        let plastic = excess / (3.0 * shear + bulk * slope * dilation);
+        let multiplier = if excess > 0.0 { plastic } else { 0.0 };
         let p_end = p + bulk * dilation * multiplier;
 
         // The apex comes before the scaling of the deviator: beyond it q - 3 G Δλ would be negative.
-        if -p_end > self.tension_cutoff {
-            history.equivalent_plastic_strain += q / (3.0 * shear);
-            history.opened_volumetric_strain = -p / bulk;
-            return ([0.0; 6], history);
+        let opens = -p_end > self.tension_cutoff;
+        let q_end = q - 3.0 * shear * multiplier;
+        let q_end = if q_end > 0.0 { q_end } else { 0.0 };
+        let scaled = q_end / q;
+        let scale = if (multiplier > 0.0) & (q > 0.0) { scaled } else { 1.0 };
+        let [xx, yy, zz, xy, yz, zx] = s.map(|x| scale * x);
+        let stress = [xx - p_end, yy - p_end, zz - p_end, xy, yz, zx];
+        Loaded {
+            stress: stress.map(|x| if opens { 0.0 } else { x }),
+            plastic_strain: if opens { q / (3.0 * shear) } else { multiplier },
+            opened: if opens { -p / bulk } else { 0.0 },
         }
-        history.equivalent_plastic_strain += multiplier;
-        let q_end = (q - 3.0 * shear * multiplier).max(0.0);
-        let scale = if multiplier > 0.0 && q > 0.0 { q_end / q } else { 1.0 };
-        let mut stress = s.map(|x| scale * x);
-        for x in &mut stress[..3] {
-            *x -= p_end;
-        }
-        (stress, history)
     }
 }
 
-/// sqrt(2/3 e : e) of the deviator e of a strain.
-fn equivalent(strain: [f64; 6]) -> f64 {
-    let e = deviator(strain);
-    (2.0 / 3.0 * contract(e, e)).sqrt()
+/// What loading a closed point gives.
+struct Loaded {
+    stress: [f64; 6],
+    plastic_strain: f64,
+    opened: f64,
+}
+
+impl PointLaw<2> for DruckerPrager {
+    type Model = Self;
+
+    #[inline(always)]
+    fn update(&self, point: &Point<2>) -> Updated<2> {
+        let strain = point.strain_increment;
+        let [plastic_strain0, opened0] = point.state0;
+        let volumetric = trace(strain);
+        let strain_deviator = deviator(strain);
+
+        // The part of the increment that loads the point: all of it, unless the point was open; then what remains when
+        // the gap has closed, or nothing. An open point starts without stress.
+        let was_open = opened0 != 0.0;
+        let gap = opened0 + volumetric;
+        let stays_open = was_open & (gap >= 0.0);
+        let after_closing = gap / volumetric;
+        let part = if was_open { after_closing } else { 1.0 };
+        let part = if stays_open { 0.0 } else { part };
+        let start = point.stress0.map(|x| if was_open { 0.0 } else { x });
+        let free = (1.0 - part) * (2.0 / 3.0 * contract(strain_deviator, strain_deviator)).sqrt();
+
+        let loaded = self.load(start, strain_deviator.map(|e| part * e), part * volumetric);
+        let state1 = [
+            plastic_strain0 + free + loaded.plastic_strain,
+            if stays_open { gap } else { loaded.opened },
+        ];
+        let wave_speed = self.wave_speed_of(point.inputs[0]);
+        let sane = is_finite(loaded.stress)
+            & is_finite(point.stress0)
+            & is_finite(strain)
+            & is_finite(state1)
+            & is_finite([wave_speed]);
+        Updated {
+            stress1: loaded.stress,
+            state1,
+            wave_speed,
+            diffusivity: 0.0,
+            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
+        }
+    }
 }

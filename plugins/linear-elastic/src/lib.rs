@@ -1,9 +1,10 @@
 //! Isotropic linear elasticity in rate form: Δσ = λ tr(Δε) I + 2 G Δε on the objectively rotated stress.
 #![forbid(unsafe_code)]
 
+use lahar_plugin::tensor::{is_finite, trace};
 use lahar_plugin::{
-    Batch, Columns, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
+    PointLaw, PointStatus, State, Updated, c_text,
 };
 use std::ffi::CStr;
 
@@ -21,6 +22,18 @@ pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
     PLUGIN.desc()
 }
 
+/// `n` points for a bench, strained and stressed, different in each point.
+pub fn sample(n: usize) -> Result<Driver, String> {
+    let named = [("youngs_modulus", 1.0e7), ("poissons_ratio", 0.3)];
+    let mut driver = Driver::new(ModelTable::of::<LinearElastic>().desc(), &named, n)?;
+    for k in 0..n {
+        let e = 1e-6 * (1.0 + (k % 7) as f64);
+        driver.set_strain_increment(k, [e, -2.0 * e, e, 3.0 * e, -e, 0.0]);
+        driver.set_stress(k, [-1e3, -2e3, -1e3, 1e2, 0.0, 1e7 * e]);
+    }
+    Ok(driver)
+}
+
 /// Elastic constants of an instance [Pa].
 pub struct LinearElastic {
     lambda: f64,
@@ -28,6 +41,7 @@ pub struct LinearElastic {
 }
 
 impl LinearElastic {
+    #[inline(always)]
     fn wave_speed_of(&self, density: f64) -> f64 {
         ((self.lambda + 2.0 * self.shear_modulus) / density).sqrt()
     }
@@ -60,28 +74,12 @@ impl Model for LinearElastic {
         Ok(Self { lambda, shear_modulus })
     }
 
+    #[inline(always)]
     fn update(&self, batch: &mut Batch<'_>) {
-        let n = batch.n();
-        let (lambda, two_g) = (self.lambda, 2.0 * self.shear_modulus);
-        {
-            let Columns { strain_increment: [xx, yy, zz, xy, yz, zx], stress0, stress1, .. } =
-                batch.columns::<0>();
-            let [s_xx, s_yy, s_zz, s_xy, s_yz, s_zx] = stress1;
-            for k in 0..n {
-                let pressure_part = lambda * (xx[k] + yy[k] + zz[k]);
-                s_xx[k] = stress0[0][k] + pressure_part + two_g * xx[k];
-                s_yy[k] = stress0[1][k] + pressure_part + two_g * yy[k];
-                s_zz[k] = stress0[2][k] + pressure_part + two_g * zz[k];
-            }
-            for k in 0..n {
-                s_xy[k] = stress0[3][k] + two_g * xy[k];
-                s_yz[k] = stress0[4][k] + two_g * yz[k];
-                s_zx[k] = stress0[5][k] + two_g * zx[k];
-            }
-        }
-        self.finish(batch);
+        batch.for_each_point(self);
     }
 
+    #[inline(always)]
     fn wave_speed(&self, batch: &mut Batch<'_>) {
         let density = batch.input(0);
         for k in 0..batch.n() {
@@ -90,19 +88,30 @@ impl Model for LinearElastic {
     }
 }
 
-impl LinearElastic {
-    /// Wave speeds, and the status of points with a stress or density that makes no sense.
-    fn finish(&self, batch: &mut Batch<'_>) {
-        let columns = batch.columns::<0>();
-        let stress = columns.stress1;
-        let density = columns.inputs[0];
-        for k in 0..density.len() {
-            let c = self.wave_speed_of(density[k]);
-            columns.wave_speed[k] = c;
-            let sum = stress.iter().fold(c, |sum, s| sum + s[k].abs());
-            if !sum.is_finite() {
-                columns.status[k] = PointStatus::Failed as i32;
-            }
+impl PointLaw<0> for LinearElastic {
+    type Model = Self;
+
+    #[inline(always)]
+    fn update(&self, point: &Point<0>) -> Updated<0> {
+        let (strain, stress0) = (point.strain_increment, point.stress0);
+        let volumetric = self.lambda * trace(strain);
+        let two_g = 2.0 * self.shear_modulus;
+        let stress1 = [
+            stress0[0] + volumetric + two_g * strain[0],
+            stress0[1] + volumetric + two_g * strain[1],
+            stress0[2] + volumetric + two_g * strain[2],
+            stress0[3] + two_g * strain[3],
+            stress0[4] + two_g * strain[4],
+            stress0[5] + two_g * strain[5],
+        ];
+        let wave_speed = self.wave_speed_of(point.inputs[0]);
+        let sane = is_finite(stress1) & is_finite([wave_speed]);
+        Updated {
+            stress1,
+            state1: [],
+            wave_speed,
+            diffusivity: 0.0,
+            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
         }
     }
 }

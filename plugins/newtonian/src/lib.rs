@@ -1,11 +1,14 @@
 //! Weakly compressible Newtonian fluid: σ = -p(J) I + 2 μ dev(Δε/Δt), J = V / V at zero pressure.
 #![forbid(unsafe_code)]
 
+mod pressure;
+
 use lahar_plugin::tensor::{deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus, State,
-    c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
+    PointLaw, PointStatus, State, Updated, c_text, math,
 };
+use pressure::{Pressure, Real, Whole};
 use std::ffi::CStr;
 
 /// The plugin with this model.
@@ -22,11 +25,24 @@ pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
     PLUGIN.desc()
 }
 
+/// `n` points for a bench: a viscous fluid in shear under pressure, different in each point; Tait's equation with the
+/// given exponent. Made for steps of 1e-4 s.
+pub fn sample(exponent: f64, n: usize) -> Result<Driver, String> {
+    let named = [("bulk_modulus", 2.0e6), ("viscosity", 1.0e-3), ("exponent", exponent)];
+    let mut driver = Driver::new(ModelTable::of::<Newtonian>().desc(), &named, n)?;
+    for k in 0..n {
+        let e = 1e-5 * (1.0 + (k % 7) as f64);
+        driver.set_strain_increment(k, [e, -2.0 * e, e, 3.0 * e, -e, 0.0]);
+        driver.set_state(k, 0, 1.0 - 10.0 * e);
+    }
+    Ok(driver)
+}
+
 #[derive(Clone, Copy)]
 enum EquationOfState {
     /// p = K/γ (J^-γ - 1)
     Tait { exponent: f64 },
-    /// p = K (1/J - 1)
+    /// p = K (1/J - 1), Tait's with the exponent 1
     Linear,
 }
 
@@ -39,18 +55,6 @@ pub struct Newtonian {
 }
 
 impl Newtonian {
-    /// Pressure at the volume ratio `j`, tension included, and the tangent -J dp/dJ [Pa].
-    fn pressure_and_tangent(&self, j: f64) -> (f64, f64) {
-        let k = self.bulk_modulus;
-        match self.equation_of_state {
-            EquationOfState::Tait { exponent } => {
-                let power_minus_one = (-exponent * j.ln()).exp_m1();
-                (k / exponent * power_minus_one, k * (power_minus_one + 1.0))
-            }
-            EquationOfState::Linear => (k * (1.0 - j) / j, k / j),
-        }
-    }
-
     /// Volume ratio at the pressure `p`; not a number or not positive if the fluid cannot have it.
     fn volume_ratio(&self, p: f64) -> f64 {
         match self.equation_of_state {
@@ -61,9 +65,65 @@ impl Newtonian {
         }
     }
 
-    /// Kinematic diffusivity of longitudinal motion, 4/3 μ/ρ [m^2/s].
-    fn diffusivity(&self, density: f64) -> f64 {
-        4.0 / 3.0 * self.viscosity / density
+    #[inline(always)]
+    fn update_with(&self, batch: &mut Batch<'_>, pressure: impl Pressure) {
+        let flows = self.viscosity > 0.0 && batch.dt() > 0.0;
+        batch.for_each_point(&Law {
+            bulk_modulus: self.bulk_modulus,
+            kinematic: 4.0 / 3.0 * self.viscosity,
+            two_mu_per_dt: if flows { 2.0 * self.viscosity / batch.dt() } else { 0.0 },
+            least_pressure: if self.zero_tension { 0.0 } else { f64::NEG_INFINITY },
+            pressure,
+        });
+    }
+
+    #[inline(always)]
+    fn wave_speed_with(&self, batch: &mut Batch<'_>, pressure: impl Pressure) {
+        let density = batch.input(0);
+        for k in 0..batch.n() {
+            let [j] = batch.state0(k);
+            let (_, tangent) = pressure.relative(j);
+            batch.set_wave_speed(k, (self.bulk_modulus * tangent / density[k]).sqrt());
+            batch.set_diffusivity(k, 4.0 / 3.0 * self.viscosity / density[k]);
+        }
+    }
+}
+
+/// The formulas of one point.
+struct Law<P> {
+    /// K [Pa]
+    bulk_modulus: f64,
+    /// 4/3 μ [Pa s]: over the density, the diffusivity of longitudinal motion.
+    kinematic: f64,
+    /// 2 μ / Δt [Pa]
+    two_mu_per_dt: f64,
+    /// 0 if there is no tension, else minus infinity [Pa]
+    least_pressure: f64,
+    pressure: P,
+}
+
+impl<P: Pressure> PointLaw<1> for Law<P> {
+    type Model = Newtonian;
+
+    #[inline(always)]
+    fn update(&self, point: &Point<1>) -> Updated<1> {
+        let (strain, density) = (point.strain_increment, point.inputs[0]);
+        let j = point.state0[0] * math::exp(trace(strain));
+        let (pressure, tangent) = self.pressure.relative(j);
+        let p = self.bulk_modulus * pressure;
+        // An opened point keeps the wave speed of its volume ratio.
+        let p = if p < self.least_pressure { self.least_pressure } else { p };
+        let [xx, yy, zz, xy, yz, zx] = deviator(strain).map(|e| self.two_mu_per_dt * e);
+        let stress1 = [xx - p, yy - p, zz - p, xy, yz, zx];
+        let wave_speed = (self.bulk_modulus * tangent / density).sqrt();
+        let sane = is_finite(strain) & is_finite(stress1) & (j > 0.0) & is_finite([wave_speed]);
+        Updated {
+            stress1,
+            state1: [j],
+            wave_speed,
+            diffusivity: self.kinematic / density,
+            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
+        }
     }
 }
 
@@ -128,41 +188,21 @@ impl Model for Newtonian {
         Ok(())
     }
 
+    #[inline(always)]
     fn update(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        let two_mu_per_dt = match self.viscosity > 0.0 && batch.dt() > 0.0 {
-            true => 2.0 * self.viscosity / batch.dt(),
-            false => 0.0,
-        };
-        for k in 0..batch.n() {
-            let strain = batch.strain_increment(k);
-            let [j0] = batch.state0(k);
-            let j = j0 * trace(strain).exp();
-            let (p, tangent) = self.pressure_and_tangent(j);
-            // An opened point keeps the wave speed of its volume ratio.
-            let p = if self.zero_tension && p < 0.0 { 0.0 } else { p };
-            let mut stress = deviator(strain).map(|e| two_mu_per_dt * e);
-            for s in &mut stress[..3] {
-                *s -= p;
-            }
-            let c = (tangent / density[k]).sqrt();
-            batch.set_stress1(k, stress);
-            batch.set_state1(k, [j]);
-            batch.set_wave_speed(k, c);
-            batch.set_diffusivity(k, self.diffusivity(density[k]));
-            if !(is_finite(strain) && is_finite(stress) && j > 0.0 && c.is_finite()) {
-                batch.set_status(k, PointStatus::Failed);
-            }
+        match self.equation_of_state {
+            EquationOfState::Linear => self.update_with(batch, Whole::<1>),
+            EquationOfState::Tait { exponent: 7.0 } => self.update_with(batch, Whole::<7>),
+            EquationOfState::Tait { exponent } => self.update_with(batch, Real { exponent }),
         }
     }
 
+    #[inline(always)]
     fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            let [j] = batch.state0(k);
-            let (_, tangent) = self.pressure_and_tangent(j);
-            batch.set_wave_speed(k, (tangent / density[k]).sqrt());
-            batch.set_diffusivity(k, self.diffusivity(density[k]));
+        match self.equation_of_state {
+            EquationOfState::Linear => self.wave_speed_with(batch, Whole::<1>),
+            EquationOfState::Tait { exponent: 7.0 } => self.wave_speed_with(batch, Whole::<7>),
+            EquationOfState::Tait { exponent } => self.wave_speed_with(batch, Real { exponent }),
         }
     }
 }

@@ -28,26 +28,26 @@ pub enum PointStatus {
 /// A run of points. Points are numbered `0..n()`.
 ///
 /// An array that the model did not declare is absent: reading it panics (which the engine sees as an error), writing
-/// an absent output does nothing. [`Batch::columns`] gives the same arrays component by component for loops that the
-/// compiler can vectorise.
+/// an absent output does nothing. [`Batch::for_each_point`] runs the formulas of one point over all of them in a loop
+/// that vectorises; [`Batch::columns`] gives the same arrays component by component.
 pub struct Batch<'a> {
     n: usize,
-    stride: usize,
+    pub(crate) stride: usize,
     dt: f64,
     time: f64,
-    strain_increment: &'a [f64],
-    velocity_gradient: &'a [f64],
-    deformation_gradient: &'a [f64],
-    stress0: &'a [f64],
-    state0: &'a [f64],
-    inputs: [&'a [f64]; MAX_INPUTS],
-    stress1: &'a mut [f64],
-    state1: &'a mut [f64],
-    wave_speed: &'a mut [f64],
-    diffusivity: &'a mut [f64],
+    pub(crate) strain_increment: &'a [f64],
+    pub(crate) velocity_gradient: &'a [f64],
+    pub(crate) deformation_gradient: &'a [f64],
+    pub(crate) stress0: &'a [f64],
+    pub(crate) state0: &'a [f64],
+    pub(crate) inputs: [&'a [f64]; MAX_INPUTS],
+    pub(crate) stress1: &'a mut [f64],
+    pub(crate) state1: &'a mut [f64],
+    pub(crate) wave_speed: &'a mut [f64],
+    pub(crate) diffusivity: &'a mut [f64],
     energy: &'a mut [f64],
     dt_factor: &'a mut [f64],
-    status: &'a mut [i32],
+    pub(crate) status: &'a mut [i32],
 }
 
 /// The arrays of a batch as one slice of `n` values per component; absent arrays are empty slices.
@@ -238,7 +238,7 @@ impl<'a> Batch<'a> {
         if stride < n || stride > isize::MAX as usize / 4096 {
             return Err(format!("the stride {stride} does not fit {n} points"));
         }
-        let states = state_components(M::STATES);
+        let states = const { state_components(M::STATES) };
         let length = |components: usize| match components {
             0 => 0,
             c => (c - 1) * stride + n,

@@ -5,6 +5,7 @@ use lahar_plugin_abi::*;
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
+use std::time::Instant;
 
 thread_local! {
     static ERROR: RefCell<String> = const { RefCell::new(String::new()) };
@@ -204,6 +205,30 @@ impl Driver {
         self.state.swap(0, 1);
     }
 
+    /// Time of one point in one `update` with the step `dt` [ns/point], through the table and with everything that a call
+    /// costs: the fastest of several runs over all points of the driver, since what disturbs a run only makes it slower. The engine's batches have 256 points. All runs
+    /// begin at the same start state; [`simd::force`](crate::simd::force) chooses the instructions.
+    pub fn nanoseconds_per_point(&mut self, dt: f64) -> Result<f64, String> {
+        const RUNS: usize = 20;
+        const POINTS_A_RUN: usize = 1 << 17;
+        self.update(dt)?;
+        let update = self.model.update.ok_or("the model has no update")?;
+        let (instance, calls) = (self.instance, (POINTS_A_RUN / self.n.max(1)).max(1));
+        let points = (calls * self.n.max(1)) as f64;
+        let inputs = self.input_pointers();
+        let batch = self.batch(&inputs, dt);
+        let mut fastest = f64::INFINITY;
+        for _ in 0..RUNS {
+            let start = Instant::now();
+            for _ in 0..calls {
+                // SAFETY: as in `call`.
+                result(unsafe { update(instance, &batch) })?;
+            }
+            fastest = fastest.min(start.elapsed().as_secs_f64() * 1e9 / points);
+        }
+        Ok(fastest)
+    }
+
     fn call(
         &mut self,
         function: unsafe extern "C" fn(*const c_void, *const lahar_stress_batch) -> i32,
@@ -215,7 +240,20 @@ impl Driver {
         {
             out.get_mut().fill(f64::NAN);
         }
-        let inputs: Vec<*const f64> = self.inputs.iter().map(|i| i.get().as_ptr()).collect();
+        let instance = self.instance;
+        let inputs = self.input_pointers();
+        let batch = self.batch(&inputs, dt);
+        // SAFETY: the instance is of this model; the arrays belong to this driver, do not alias and are as long as the
+        // ABI says.
+        result(unsafe { function(instance, &batch) })
+    }
+
+    fn input_pointers(&self) -> Vec<*const f64> {
+        self.inputs.iter().map(|i| i.get().as_ptr()).collect()
+    }
+
+    /// The C batch of all points; arrays that the model has not declared are NULL.
+    fn batch(&mut self, inputs: &[*const f64], dt: f64) -> lahar_stress_batch {
         let given = |wanted: bool, array: &Aligned| {
             if wanted { array.get().as_ptr() } else { ptr::null() }
         };
@@ -231,7 +269,7 @@ impl Driver {
         };
         let [stress0, stress1] = &mut self.stress;
         let [state0, state1] = &mut self.state;
-        let batch = lahar_stress_batch {
+        lahar_stress_batch {
             struct_size: size_of::<lahar_stress_batch>() as u32,
             flags: 0,
             n: self.n as i64,
@@ -255,10 +293,7 @@ impl Driver {
             } else {
                 ptr::null_mut()
             },
-        };
-        // SAFETY: the instance is of this model; the arrays belong to this driver, do not alias and are as long as the
-        // ABI says.
-        result(unsafe { function(self.instance, &batch) })
+        }
     }
 }
 

@@ -8,12 +8,18 @@
 //! Conventions of all arrays: SI or any other consistent units; tension positive; symmetric tensors are the tensor
 //! components xx, yy, zz, xy, yz, zx; general tensors are row-major; both are three-dimensional in plane strain too.
 //!
+//! A model whose formulas are those of one point is written as a [`PointLaw`]: [`Batch::for_each_point`] runs it over a
+//! batch with the widest vector instructions of the processor ([`simd`]).
+//!
 //! A panic in a model does not leave the plugin: the function that was running returns `LAHAR_PLUGIN_ERROR` with the
 //! text of the panic. [`Driver`] runs a model through its table without an engine: element tests are written with it.
 
 mod batch;
 mod drive;
+pub mod math;
 mod model;
+mod point;
+pub mod simd;
 mod table;
 pub mod tensor;
 mod wall;
@@ -23,6 +29,7 @@ pub use drive::Driver;
 pub use lahar_plugin_abi as abi;
 pub use model::Model;
 pub use nalgebra;
+pub use point::{Point, PointLaw, Updated};
 pub use table::{Input, Kinematics, ModelTable, Output, Parameter, Plugin, State, c_text};
 pub use wall::{enter, log};
 

@@ -38,8 +38,12 @@ pub trait Model: Sized + Send + Sync + 'static {
 
     /// Advances all points of the batch by one step: writes the whole end stress and end state, and the outputs.
     /// A point that cannot be updated gets [`PointStatus::Failed`](crate::PointStatus::Failed).
+    ///
+    /// The function is compiled once per [level of vector instructions](crate::simd); mark it `#[inline(always)]`, or
+    /// its loops get those that every processor has. [`Batch::for_each_point`] is the short way.
     fn update(&self, batch: &mut Batch<'_>);
 
     /// Writes the wave speed (and the diffusivity, if declared) of the points from start stress, start state and inputs.
+    /// Compiled like `update`.
     fn wave_speed(&self, batch: &mut Batch<'_>);
 }

@@ -2,6 +2,7 @@
 
 use crate::batch::{Batch, Call};
 use crate::model::Model;
+use crate::simd::{self, Work};
 use crate::table::Plugin;
 use lahar_plugin_abi::*;
 use std::any::Any;
@@ -154,8 +155,8 @@ pub(crate) unsafe extern "C" fn update<M: Model>(
 ) -> i32 {
     // SAFETY: as in `init_state`.
     guard(|| unsafe {
-        with::<M>(instance, batch, Call::Update, |m, b| {
-            m.update(b);
+        with::<M>(instance, batch, Call::Update, |model, batch| {
+            simd::run(Update { model, batch });
             Ok(())
         })
     })
@@ -167,11 +168,36 @@ pub(crate) unsafe extern "C" fn wave_speed<M: Model>(
 ) -> i32 {
     // SAFETY: as in `init_state`.
     guard(|| unsafe {
-        with::<M>(instance, batch, Call::WaveSpeed, |m, b| {
-            m.wave_speed(b);
+        with::<M>(instance, batch, Call::WaveSpeed, |model, batch| {
+            simd::run(WaveSpeed { model, batch });
             Ok(())
         })
     })
+}
+
+/// A model's loops, to be compiled once per level of instructions.
+struct Update<'c, 'b, M> {
+    model: &'c M,
+    batch: &'c mut Batch<'b>,
+}
+
+impl<M: Model> Work for Update<'_, '_, M> {
+    #[inline(always)]
+    fn run(self) {
+        self.model.update(self.batch);
+    }
+}
+
+struct WaveSpeed<'c, 'b, M> {
+    model: &'c M,
+    batch: &'c mut Batch<'b>,
+}
+
+impl<M: Model> Work for WaveSpeed<'_, '_, M> {
+    #[inline(always)]
+    fn run(self) {
+        self.model.wave_speed(self.batch);
+    }
 }
 
 /// # Safety
