@@ -1,6 +1,7 @@
 //! Runs of particles that threads work on.
 
 use super::Layout;
+use crate::simd::prefetch;
 
 /// Particles in a chunk: its columns and its scratch fit the second-level cache.
 pub const CHUNK: usize = 256;
@@ -49,10 +50,21 @@ impl<'a> ChunkMut<'a> {
         self.columns[component]
     }
 
-    /// All components.
-    #[inline(always)]
-    pub fn columns(&self) -> impl Iterator<Item = &[f64]> {
-        self.columns.iter().take(self.layout.components()).map(|column| &**column)
+    /// What a gather writes of the particles in `range`, with their marks (see [`ChunkMut::moved`]).
+    pub fn motion<const D: usize>(&mut self, (first, end): (usize, usize)) -> Motion<'_, D> {
+        let layout = self.layout;
+        let (motion, rest) = self.columns.split_at_mut(layout.mass);
+        let (position, velocity) = motion.split_at_mut(layout.velocity);
+        let (others, affine) = rest.split_at_mut(layout.affine - layout.mass);
+        let rows = if layout.deformation_gradient > layout.affine { D } else { 0 };
+        let mut rows = affine[..rows * D].chunks_exact_mut(D);
+        Motion {
+            position: parts(position, first, end),
+            velocity: parts(velocity, first, end),
+            affine: std::array::from_fn(|_| parts(rows.next().unwrap_or_default(), first, end)),
+            others,
+            first,
+        }
     }
 
     /// One component of all particles of the run, to write.
@@ -116,6 +128,45 @@ impl<'a> ChunkMut<'a> {
             work(&mut chunk);
         }
     }
+}
+
+/// The columns that a gather writes.
+pub struct Motion<'a, const D: usize> {
+    /// Position [m].
+    pub position: [&'a mut [f64]; D],
+    /// Velocity [m/s].
+    pub velocity: [&'a mut [f64]; D],
+    /// Rows of the affine matrix [1/s]; empty if there is none.
+    pub affine: [[&'a mut [f64]; D]; D],
+    others: &'a [&'a mut [f64]],
+    first: usize,
+}
+
+impl<const D: usize> Motion<'_, D> {
+    /// Asks the memory for the particles from k on: for what a gather writes, and for what the next stages read.
+    #[inline(always)]
+    pub fn prefetch(&self, k: usize) {
+        for a in 0..D {
+            prefetch(self.position[a], k);
+            prefetch(self.velocity[a], k);
+            for column in &self.affine[a] {
+                prefetch(column, k);
+            }
+        }
+        for column in self.others {
+            prefetch(column, self.first + k);
+        }
+    }
+}
+
+/// The elements `first..end` of D columns; empty where there are no columns.
+fn parts<'a, const D: usize>(
+    columns: &'a mut [&mut [f64]],
+    first: usize,
+    end: usize,
+) -> [&'a mut [f64]; D] {
+    let mut columns = columns.iter_mut();
+    std::array::from_fn(|_| columns.next().map_or(&mut [][..], |column| &mut column[first..end]))
 }
 
 /// Calls `work` on tasks of at most 1024 particles and folds the results from left to right, so that neither the tasks nor the order

@@ -8,7 +8,7 @@ pub mod fields;
 pub mod moves;
 pub mod seeding;
 
-pub use chunk::{CHUNK, ChunkMut, for_each_task};
+pub use chunk::{CHUNK, ChunkMut, Motion, for_each_task};
 pub use fields::{FieldInfo, Layout};
 pub use moves::Moves;
 

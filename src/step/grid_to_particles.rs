@@ -10,10 +10,10 @@ use std::marker::PhantomData;
 use crate::grid::key::EDGE;
 use crate::grid::tiles::{TileNode, load_tile};
 use crate::grid::{Grid, Key, Lanes};
-use crate::particles::ChunkMut;
+use crate::particles::{CHUNK, ChunkMut, Motion};
 use crate::shape::stencil::{ShapeFunction, Stencil};
-use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
-use crate::step::particles_to_grid::{Axes, Weights, corners, span};
+use crate::simd::{Isa, Kernel, LANES, Vector, each};
+use crate::step::particles_to_grid::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
 
@@ -124,65 +124,172 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherRun<'
     #[inline(always)]
     fn run<V: Vector>(self) {
         let Self(job, tile, chunk, gradient, _) = self;
-        let (first, last) = job.range;
-        for k in (first..last).step_by(LANES) {
-            let end = last.min(k + LANES);
-            chunk.columns().for_each(|column| prefetch(column, k + AHEAD));
-            let x: [V; D] =
-                each!(d in D => V::load(&chunk.column(chunk.layout.position + d)[k..end]));
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
-            let received = receive(job, &stencil, tile, end - k);
-            if end == k + LANES {
-                keep::<V, S, N, D>(job, &received, x, chunk, gradient, (k, k + LANES)); // of known length
-            } else {
-                keep::<V, S, N, D>(job, &received, x, chunk, gradient, (k, end));
+        let (first, end) = job.range;
+        let mut marks = [0; CHUNK / LANES];
+        {
+            let mut motion = chunk.motion::<D>(job.range);
+            let mut gradient = rows_of_gradient(gradient, job.stride, job.range);
+            let mut batch = Batch::<N, D>::new();
+            let mut taken = Taken::new();
+            for start in (0..end - first).step_by(BATCH) {
+                let count = BATCH.min(end - first - start);
+                batch.set::<V, S>(job, &motion, start, count);
+                batch.take(tile, count, &mut taken);
+                for k in (start..start + count).step_by(LANES) {
+                    let received = taken.received(job, (k - start) / LANES);
+                    let end = (start + count).min(k + LANES);
+                    let mark = &mut marks[k / LANES];
+                    if end == k + LANES {
+                        let range = (k, k + LANES); // of known length
+                        *mark =
+                            keep::<V, S, N, D>(job, &received, &mut motion, &mut gradient, range);
+                    } else {
+                        let range = (k, end);
+                        *mark =
+                            keep::<V, S, N, D>(job, &received, &mut motion, &mut gradient, range);
+                    }
+                }
             }
         }
+        for (n, mark) in marks.iter().take((end - first).div_ceil(LANES)).enumerate() {
+            chunk.mark_moved(first + n * LANES, *mark);
+        }
     }
+}
+
+/// The rows of the velocity gradient of the particles in a range.
+fn rows_of_gradient<'a, const D: usize>(
+    gradient: &'a mut [f64],
+    stride: usize,
+    (first, end): (usize, usize),
+) -> [[&'a mut [f64]; D]; D] {
+    let mut rows = gradient.chunks_exact_mut(3 * stride);
+    std::array::from_fn(|_| {
+        let mut row = rows.next().unwrap_or_default().chunks_exact_mut(stride);
+        std::array::from_fn(|_| &mut row.next().unwrap_or_default()[first..end])
+    })
 }
 
 /// How many particles before its use a line of a column is asked for, here and in the stages that follow.
 const AHEAD: usize = 64;
 
-/// Updates the particles k to `end` from what they took.
+/// Stencils of a batch.
+struct Batch<const N: usize, const D: usize> {
+    weights: [Weights<N, D>; GROUPS],
+    corners: [[u32; LANES]; GROUPS],
+}
+
+impl<const N: usize, const D: usize> Batch<N, D> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { weights: [const { Weights::ZERO }; GROUPS], corners: [[0; LANES]; GROUPS] }
+    }
+
+    #[inline(always)]
+    fn set<V: Vector, S: ShapeFunction<N>>(
+        &mut self,
+        job: &GatherJob<D>,
+        motion: &Motion<'_, D>,
+        start: usize,
+        count: usize,
+    ) {
+        for g in 0..count.div_ceil(LANES) {
+            let k = start + g * LANES;
+            let end = (start + count).min(k + LANES);
+            motion.prefetch(k + AHEAD);
+            let x: [V; D] = each!(d in D => V::load(&motion.position[d][k..end]));
+            let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
+            self.weights[g].set(&stencil, job.transfer.is_affine());
+            self.corners[g] = corners(&stencil, job.key);
+        }
+    }
+
+    /// What the particles take from the nodes of their stencils.
+    #[inline(always)]
+    fn take<V: Vector>(&self, tile: &[TileNode], count: usize, taken: &mut Taken<V, D>) {
+        for p in 0..count {
+            let (g, l) = (p / LANES, p % LANES);
+            let nodes = &tile[self.corners[g][l] as usize..][..span(N, D)];
+            let (sum, slopes) = collect(nodes, &self.weights[g].axes(l));
+            taken.sums[g][l] = sum;
+            for d in 0..D {
+                taken.slopes[g][d][l] = slopes[d];
+            }
+        }
+    }
+}
+
+/// Σ w R and Σ c_d R of a batch: a vector holds the lanes of the nodes, for one particle.
+struct Taken<V, const D: usize> {
+    sums: [[V; LANES]; GROUPS],
+    slopes: [[[V; LANES]; D]; GROUPS],
+}
+
+impl<V: Vector, const D: usize> Taken<V, D> {
+    #[inline(always)]
+    fn new() -> Self {
+        let zero = V::splat(0.0);
+        Self { sums: [[zero; LANES]; GROUPS], slopes: [[[zero; LANES]; D]; GROUPS] }
+    }
+
+    /// The same for the eight particles of a group: a vector holds one component.
+    #[inline(always)]
+    fn received(&self, job: &GatherJob<D>, g: usize) -> Received<V, D> {
+        let sums = V::transpose(self.sums[g]);
+        let mut slopes = self.slopes[g];
+        for d in 0..D {
+            slopes[d] = V::transpose(slopes[d]);
+        }
+        let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
+        let first = job.gradient_lane();
+        Received {
+            velocity: each!(a in D => sums[1 + a]),
+            increment: each!(a in D => sums[5 + a]),
+            moment: each!(a in D, b in D => slopes[b][1 + a] * h),
+            gradient: each!(a in D, b in D => slopes[b][first + a] * inverse),
+        }
+    }
+}
+
+/// Updates the particles of a range from what they took. Gives a bit for each that left its block.
 #[inline(always)]
 fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<D>,
     received: &Received<V, D>,
-    x: [V; D],
-    chunk: &mut ChunkMut<'_>,
-    gradient: &mut [f64],
+    motion: &mut Motion<'_, D>,
+    gradient: &mut [[&mut [f64]; D]; D],
     (k, end): (usize, usize),
-) {
-    let layout = chunk.layout;
+) -> u8 {
     if job.what != Gather::PositionAndGradient {
         let mut v = received.velocity;
         if job.transfer.is_affine() {
             let c = apic::affine(received, S::MOMENT, job.space.spacing);
             for a in 0..D {
                 for b in 0..D {
-                    c[a][b].store(&mut chunk.column_mut(layout.affine + a * D + b)[k..end]);
+                    c[a][b].store(&mut motion.affine[a][b][k..end]);
                 }
             }
         } else {
-            let old = each!(a in D => V::load(&chunk.column(layout.velocity + a)[k..end]));
+            let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
             v = pic_flip::velocity(old, received, job.pic_share);
         }
         for a in 0..D {
-            v[a].store(&mut chunk.column_mut(layout.velocity + a)[k..end]);
+            v[a].store(&mut motion.velocity[a][k..end]);
         }
     }
-    if job.what != Gather::Velocity {
-        let new = each!(a in D => V::splat(job.dt).mul_add(received.velocity[a], x[a]));
-        chunk.mark_moved(k, outside(job, new, end - k));
-        for a in 0..D {
-            new[a].store(&mut chunk.column_mut(layout.position + a)[k..end]);
-            for b in 0..D {
-                let at = (3 * a + b) * job.stride;
-                received.gradient[a][b].store(&mut gradient[at + k..at + end]);
-            }
+    if job.what == Gather::Velocity {
+        return 0;
+    }
+    let mut x = received.velocity;
+    for a in 0..D {
+        let old = V::load(&motion.position[a][k..end]);
+        x[a] = V::splat(job.dt).mul_add(x[a], old);
+        x[a].store(&mut motion.position[a][k..end]);
+        for b in 0..D {
+            received.gradient[a][b].store(&mut gradient[a][b][k..end]);
         }
     }
+    outside(job, x, end - k)
 }
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.
@@ -197,40 +304,6 @@ fn outside<V: Vector, const D: usize>(job: &GatherJob<D>, x: [V; D], count: usiz
         inside &= !place.less_than(low) & place.less_than(high);
     }
     !inside & (u8::MAX >> (LANES - count))
-}
-
-/// What `count` particles take from the nodes of their stencils.
-#[inline(always)]
-fn receive<V: Vector, const N: usize, const D: usize>(
-    job: &GatherJob<D>,
-    stencil: &Stencil<V, N, D>,
-    tile: &[TileNode],
-    count: usize,
-) -> Received<V, D> {
-    let weights = Weights::new(stencil, job.transfer.is_affine());
-    let corners = corners(stencil, job.key);
-    let mut sums = [V::splat(0.0); LANES];
-    let mut slopes = [[V::splat(0.0); LANES]; D];
-    for l in 0..count {
-        let nodes = &tile[corners[l] as usize..][..span(N, D)];
-        let (sum, slope) = collect(nodes, &weights.axes(l));
-        sums[l] = sum;
-        for d in 0..D {
-            slopes[d][l] = slope[d];
-        }
-    }
-    let sums = V::transpose(sums);
-    for d in 0..D {
-        slopes[d] = V::transpose(slopes[d]);
-    }
-    let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
-    let first = job.gradient_lane();
-    Received {
-        velocity: each!(a in D => sums[1 + a]),
-        increment: each!(a in D => sums[5 + a]),
-        moment: each!(a in D, b in D => slopes[b][1 + a] * h),
-        gradient: each!(a in D, b in D => slopes[b][first + a] * inverse),
-    }
 }
 
 /// Σ w R and, for each axis d, Σ c_d R over the nodes of a stencil, in units of the spacing.

@@ -194,25 +194,29 @@ pub struct Weights<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Weights<N, D> {
+    /// Room.
+    pub const ZERO: Self = Self {
+        w: [[[0.0; LANES]; N]; D],
+        low: [[[0.0; LANES]; N]; D],
+        high: [[[0.0; LANES]; N]; D],
+    };
+
     /// c_n = [r_n w_n; w'_n] with the distance r_n = x_n − x_p in units of the spacing, or [w'_n; w'_n] if not `moments`.
     #[inline(always)]
-    pub fn new<V: Vector>(stencil: &Stencil<V, N, D>, moments: bool) -> Self {
-        let zeros = [[[0.0; LANES]; N]; D];
-        let mut weights = Self { w: zeros, low: zeros, high: zeros };
+    pub fn set<V: Vector>(&mut self, stencil: &Stencil<V, N, D>, moments: bool) {
         for d in 0..D {
             let axis = &stencil.axes[d];
             for n in 0..N {
                 if rest(N) == Some(n) {
                     continue;
                 }
-                weights.w[d][n] = axis.w[n].to_array();
-                weights.high[d][n] = axis.dw[n].to_array();
+                axis.w[n].store(&mut self.w[d][n]);
+                axis.dw[n].store(&mut self.high[d][n]);
                 let r = V::splat(n as f64) - axis.fraction;
                 let low = if moments { r * axis.w[n] } else { axis.dw[n] };
-                weights.low[d][n] = low.to_array();
+                low.store(&mut self.low[d][n]);
             }
         }
-        weights
     }
 
     /// The axes of particle l.
@@ -346,24 +350,69 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<
     fn run<V: Vector>(self) {
         let Self(job, tile, _) = self;
         let columns = Columns::<D>::new(job);
-        let count = (job.run.end - job.run.first) as usize;
-        for k in (0..count).step_by(LANES) {
-            columns.prefetch(k + AHEAD);
-            let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
-            let weights = Weights::new(&stencil, true);
-            let corners = corners(&stencil, job.key);
-            let (value, slopes) = payload::<V, D>(job, &columns, k);
-            for l in 0..LANES.min(count - k) {
-                let nodes = &mut tile[corners[l] as usize..][..span(N, D)];
-                add(nodes, &weights.axes(l), value[l], each!(d in D => slopes[d][l]));
+        let all = (job.run.end - job.run.first) as usize;
+        let mut batch = Batch::<V, N, D>::new();
+        for start in (0..all).step_by(BATCH) {
+            let count = BATCH.min(all - start);
+            for g in 0..count.div_ceil(LANES) {
+                batch.set::<S>(g, job, &columns, start + g * LANES);
+            }
+            for p in 0..count {
+                let (g, l) = (p / LANES, p % LANES);
+                let nodes = &mut tile[batch.corners[g][l] as usize..][..span(N, D)];
+                let (value, columns) = (batch.values[g][l], &batch.columns[g]);
+                add(nodes, &batch.weights[g].axes(l), value, each!(d in D => columns[d][l]));
             }
         }
     }
 }
 
+/// Particles that go through each part of a kernel together: the parts have long chains of operations, which overlap within a part
+/// only.
+pub const BATCH: usize = 4 * LANES;
+/// The same in groups of eight.
+pub const GROUPS: usize = BATCH / LANES;
+
+/// Stencils of a batch, and what its particles give: value, and columns of affine matrix and stress.
+struct Batch<V, const N: usize, const D: usize> {
+    weights: [Weights<N, D>; GROUPS],
+    corners: [[u32; LANES]; GROUPS],
+    values: [[V; LANES]; GROUPS],
+    columns: [[[V; LANES]; D]; GROUPS],
+}
+
+impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
+    #[inline(always)]
+    fn new() -> Self {
+        let zeros = [V::splat(0.0); LANES];
+        Self {
+            weights: [const { Weights::ZERO }; GROUPS],
+            corners: [[0; LANES]; GROUPS],
+            values: [zeros; GROUPS],
+            columns: [[zeros; D]; GROUPS],
+        }
+    }
+
+    /// Sets group g: the particles from k on.
+    #[inline(always)]
+    fn set<S: ShapeFunction<N>>(
+        &mut self,
+        g: usize,
+        job: &ScatterJob<'_, D>,
+        columns: &Columns<'_, D>,
+        k: usize,
+    ) {
+        columns.prefetch(k + AHEAD);
+        let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
+        let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
+        self.weights[g].set(&stencil, true);
+        self.corners[g] = corners(&stencil, job.key);
+        (self.values[g], self.columns[g]) = payload(job, columns, k);
+    }
+}
+
 /// How many particles before its use a line of a column is asked for.
-const AHEAD: usize = 32;
+const AHEAD: usize = 64;
 
 /// The columns of a run that the scatter reads.
 struct Columns<'a, const D: usize> {
