@@ -9,6 +9,7 @@ pub(crate) use log::{LogQueue, LogScope, push_current};
 use crate::error::{Error, Result, Status};
 use crate::material::{Model, Plugin};
 use crate::plugin;
+use crate::simd::Isa;
 use pool::Pool;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -19,6 +20,7 @@ pub const MAX_THREADS: usize = 1024;
 /// Threads, log and loaded plugins. Worlds and materials keep their context alive.
 pub struct Context {
     pool: Option<Pool>,
+    isa: Isa,
     used: Vec<AtomicBool>,
     log: Arc<LogQueue>,
     plugins: RwLock<Vec<&'static Plugin>>,
@@ -29,8 +31,13 @@ impl Context {
     /// One thread means that everything runs on the calling thread and none is started.
     ///
     /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
-    /// number; [`Status::Threads`] if the system gives no threads.
+    /// number, or a `LAHAR_SIMD` that is unknown or that the processor lacks; [`Status::Threads`] if the system gives no threads.
     pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
+        Self::with_isa(threads, Isa::of_environment()?)
+    }
+
+    /// The same with a given instruction set.
+    pub fn with_isa(threads: Option<usize>, isa: Isa) -> Result<Arc<Context>> {
         let threads = match threads {
             Some(threads) => checked_threads(threads, "the thread count")?,
             None => threads_of_environment()?,
@@ -38,7 +45,12 @@ impl Context {
         let log = Arc::new(LogQueue::default());
         let pool = if threads > 1 { Some(Pool::new(threads, &log)?) } else { None };
         let used = (0..threads).map(|_| AtomicBool::new(false)).collect();
-        Ok(Arc::new(Context { pool, used, log, plugins: RwLock::default() }))
+        Ok(Arc::new(Context { pool, isa, used, log, plugins: RwLock::default() }))
+    }
+
+    /// The instruction set that kernels use: what `LAHAR_SIMD` asks for (`scalar`, `avx2`, `avx512`), or the best that the processor has.
+    pub fn isa(&self) -> Isa {
+        self.isa
     }
 
     /// Number of threads that run a step, the calling one included if it is the only one.
@@ -82,7 +94,9 @@ impl Context {
             Some(pool) => pool.worker(),
             None => Some(0),
         };
-        if let Some(used) = worker.and_then(|w| self.used.get(w)) {
+        if let Some(used) = worker.and_then(|w| self.used.get(w))
+            && !used.load(Ordering::Relaxed)
+        {
             used.store(true, Ordering::Relaxed);
         }
     }

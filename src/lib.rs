@@ -23,6 +23,7 @@ pub mod output;
 pub mod particles;
 mod plugin;
 pub mod shape;
+pub mod simd;
 pub mod step;
 pub mod tensor;
 pub mod transfer;

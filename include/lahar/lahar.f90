@@ -286,6 +286,14 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_context_thread_count
 
+    function lahar_context_simd(context) &
+        bind(c, name="lahar_context_simd") result(answer)
+      import :: c_ptr
+      implicit none
+      type(c_ptr), value :: context
+      type(c_ptr) :: answer
+    end function lahar_context_simd
+
     function lahar_context_threads_used(context, threads) &
         bind(c, name="lahar_context_threads_used") result(answer)
       import :: c_int32_t, c_ptr
@@ -919,6 +927,7 @@ module lahar
   public :: lahar_context_create
   public :: lahar_context_free
   public :: lahar_context_thread_count
+  public :: lahar_context_simd
   public :: lahar_context_threads_used
   public :: lahar_context_set_log
   public :: lahar_log_stderr
@@ -991,6 +1000,7 @@ module lahar
     procedure :: create => context_create
     procedure :: free => context_free
     procedure :: thread_count => context_thread_count
+    procedure :: simd => context_simd
     procedure :: threads_used => context_threads_used
     procedure :: log_to_stderr => context_log_to_stderr
     procedure :: load_plugin => context_load_plugin
@@ -1091,6 +1101,13 @@ contains
     call finish(lahar_context_thread_count(self%handle, found), stat, errmsg)
     threads = found(1)
   end function context_thread_count
+
+  !> Name of the instruction set of the kernels: scalar, avx2 or avx512; empty without a context. Cannot fail.
+  function context_simd(self) result(name)
+    class(lahar_context), intent(in) :: self
+    character(:), allocatable :: name
+    name = from_c(lahar_context_simd(self%handle))
+  end function context_simd
 
   !> Number of different threads that have worked so far.
   integer function context_threads_used(self, stat, errmsg) result(threads)

@@ -221,7 +221,8 @@ typedef struct lahar_plugin_info {
 // `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
 // set. With more than 1 the context starts that many threads of its own; they end with it.
 // `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or the variable), LAHAR_ERROR_THREADS.
+// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
 // Thread: any
 lahar_status lahar_context_create(int32_t threads,
                                   lahar_context **context);
@@ -236,6 +237,15 @@ void lahar_context_free(lahar_context *context);
 // Errors: LAHAR_ERROR_NULL_ARGUMENT.
 // Thread: any
 lahar_status lahar_context_thread_count(const lahar_context *context, int32_t *threads);
+
+// Name of the instruction set that the context's kernels use: "scalar", "avx2" or "avx512".
+//
+// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made. Results
+// are the same to the last bit for any number of threads; between instruction sets they differ by round-off.
+//
+// The text is static: do not free it. NULL for a NULL context. Cannot fail.
+// Thread: any
+const char *lahar_context_simd(const lahar_context *context);
 
 // Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.
 //

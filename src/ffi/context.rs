@@ -76,7 +76,8 @@ unsafe impl Grows for lahar_plugin_info {
 /// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
 /// set. With more than 1 the context starts that many threads of its own; they end with it.
 /// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or the variable), LAHAR_ERROR_THREADS.
+/// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_create(
@@ -122,6 +123,20 @@ pub unsafe extern "C" fn lahar_context_thread_count(
         threads.set(cell.context.threads() as i32);
         Ok(())
     })
+}
+
+/// Name of the instruction set that the context's kernels use: "scalar", "avx2" or "avx512".
+///
+/// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made. Results
+/// are the same to the last bit for any number of threads; between instruction sets they differ by round-off.
+///
+/// The text is static: do not free it. NULL for a NULL context. Cannot fail.
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_simd(context: *const lahar_context) -> *const c_char {
+    // SAFETY: the host passes NULL or a live handle.
+    let handle = unsafe { context.as_ref() };
+    handle.map_or(std::ptr::null(), |context| context.cell.context.isa().name_c().as_ptr())
 }
 
 /// Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.

@@ -1,6 +1,7 @@
 //! The sparse background grid: blocks of 4^D nodes that appear where particles are and vanish behind them.
 
 pub mod blocks;
+pub mod index;
 pub mod key;
 pub mod tiles;
 
@@ -13,12 +14,10 @@ use crate::error::{Error, Result};
 /// Four lanes of a node: [m, mv] or [m, v] or [–, f]; in two dimensions the last lane is zero.
 pub type Lanes = [f64; 4];
 
-/// y += a x.
-#[inline(always)]
-pub fn add_lanes(y: &mut Lanes, a: f64, x: &Lanes) {
-    for l in 0..4 {
-        y[l] += a * x[l];
-    }
+/// Room to make for the nodes of `n` blocks or tiles, whose number comes and goes: an eighth to a half more, so that it seldom grows. It
+/// depends on n alone, not on how many there were before.
+pub fn room(n: usize) -> usize {
+    (n + n / 8).next_multiple_of((n.next_power_of_two() / 8).max(8))
 }
 
 /// How blocks come and go.

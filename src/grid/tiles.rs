@@ -3,17 +3,22 @@
 //! A tile covers its block and the first N − 1 node layers of the next blocks: (4 + N − 1)^D nodes. After the scatter each
 //! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
 
-use super::{EDGE, Grid, Lanes, NONE};
+use super::blocks::Neighbours;
+use super::{EDGE, Grid, Lanes, NONE, room};
 use crate::error::Result;
-use crate::particles::reserve;
+use crate::particles::{refill, reserve_exact};
+use crate::simd::{Isa, Kernel, Vector};
 
-/// A node of a tile: [m, mv] and [–, f] on the way to the grid, R0 and R1 on the way back.
-pub type TileNode = [Lanes; 2];
+/// What memory is for, if there is none.
+const WHAT: &str = "the tiles of the grid";
+
+/// A node of a tile: [m, mv; –, f] on the way to the grid, two records of it on the way back.
+pub use crate::simd::TileNode;
 
 /// Particles of one body that stand in one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Position of the block.
+    /// Slot of the block.
     pub block: u32,
     /// Position of the body in the world.
     pub body: u32,
@@ -31,13 +36,15 @@ const TILE_PARTICLES: u32 = 2048;
 pub struct Tiles {
     /// Nodes along the edge of a tile.
     pub edge: usize,
-    /// Runs in the order of blocks, then bodies, cut at the size of a tile.
+    /// Runs in the Morton order of blocks, then of bodies, cut at the size of a tile.
     pub runs: Vec<Run>,
     /// For each tile its runs, as a range of `runs`.
     pub tiles: Vec<(u32, u32)>,
-    /// For each block its tiles, as a range of `tiles`.
+    /// For each tile the number of particles in the tiles before it, and behind the last the number of all.
+    pub start: Vec<u32>,
+    /// For each slot of the grid its tiles, as a range of `tiles`.
     pub of_block: Vec<(u32, u32)>,
-    /// Node records of all tiles.
+    /// Node records of all tiles, and of some more that may be needed.
     pub nodes: Vec<TileNode>,
 }
 
@@ -47,16 +54,19 @@ impl Tiles {
         Self { edge: EDGE + shape_nodes - 1, ..Self::default() }
     }
 
-    /// Deals the runs of all bodies out to tiles. `blocks` is the number of active blocks, `dimension` the number of axes.
+    /// Deals the runs of all bodies out to tiles. `place` gives for each slot of the grid its place in Morton order; `dimension` is
+    /// the number of axes.
     ///
     /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn assign(
         &mut self,
-        runs: impl Iterator<Item = Run>,
-        blocks: usize,
+        runs: impl Iterator<Item = Run> + Clone,
+        place: &[u32],
         dimension: usize,
     ) -> Result<()> {
-        self.runs.clear();
+        let pieces: usize =
+            runs.clone().map(|r| (r.end - r.first).div_ceil(TILE_PARTICLES) as usize).sum();
+        refill(&mut self.runs, pieces, WHAT)?;
         for mut run in runs {
             while run.end - run.first > TILE_PARTICLES {
                 self.runs.push(Run { end: run.first + TILE_PARTICLES, ..run });
@@ -64,11 +74,15 @@ impl Tiles {
             }
             self.runs.push(run);
         }
-        self.runs.sort_unstable_by_key(|r| (r.block, r.body, r.first));
-        self.tiles.clear();
-        self.of_block.clear();
-        self.of_block.resize(blocks, (0, 0));
-        let (mut block, mut load) = (NONE, 0);
+        let order = |run: &Run| (place[run.block as usize], run.body, run.first);
+        if !self.runs.is_sorted_by_key(order) {
+            self.runs.sort_unstable_by_key(order);
+        }
+        refill(&mut self.tiles, pieces, WHAT)?;
+        refill(&mut self.start, pieces + 1, WHAT)?;
+        refill(&mut self.of_block, place.len(), WHAT)?;
+        self.of_block.resize(place.len(), (0, 0));
+        let (mut block, mut load, mut all) = (NONE, 0, 0);
         for (r, run) in self.runs.iter().enumerate() {
             let r = r as u32;
             let size = run.end - run.first;
@@ -77,19 +91,26 @@ impl Tiles {
                 let of_block = &mut self.of_block[run.block as usize];
                 *of_block = (if run.block == block { of_block.0 } else { tile }, tile + 1);
                 self.tiles.push((r, r));
+                self.start.push(all);
                 (block, load) = (run.block, 0);
             }
             load += size;
+            all += size;
             if let Some(tile) = self.tiles.last_mut() {
                 tile.1 = r + 1;
             }
         }
-        let nodes = self.tiles.len() * self.tile_nodes(dimension);
+        self.start.push(all);
+        self.fit_nodes(dimension)
+    }
+
+    /// Room for the nodes of all tiles; memory is given back when less than a quarter is needed.
+    fn fit_nodes(&mut self, dimension: usize) -> Result<()> {
+        let nodes = room(self.tiles.len()) * self.tile_nodes(dimension);
         if nodes > self.nodes.len() || 4 * nodes < self.nodes.len() {
-            self.nodes.clear();
-            self.nodes.shrink_to(2 * nodes);
-            reserve(&mut self.nodes, nodes, "the tiles of the grid")?;
-            self.nodes.resize(nodes, [[0.0; 4]; 2]);
+            self.nodes = Vec::new();
+            reserve_exact(&mut self.nodes, nodes, WHAT)?;
+            self.nodes.resize(nodes, TileNode::default());
         }
         Ok(())
     }
@@ -99,10 +120,17 @@ impl Tiles {
         self.edge.pow(dimension as u32)
     }
 
-    /// The nodes of tile t.
-    pub fn tile(&self, t: usize, dimension: usize) -> &[TileNode] {
-        let n = self.tile_nodes(dimension);
-        &self.nodes[t * n..(t + 1) * n]
+    /// The tiles of the block at `corner` of a neighbourhood.
+    #[inline(always)]
+    pub fn around<const D: usize>(
+        &self,
+        neighbours: Option<&Neighbours>,
+        corner: usize,
+    ) -> impl Iterator<Item = &[TileNode]> {
+        let block = neighbours.map_or(NONE, |n| n[corner]) as usize;
+        let (first, end) = self.of_block.get(block).copied().unwrap_or_default();
+        let n = self.tile_nodes(D);
+        self.nodes[first as usize * n..end as usize * n].chunks_exact(n)
     }
 
     /// Memory [bytes].
@@ -110,42 +138,64 @@ impl Tiles {
         self.nodes.capacity() * size_of::<TileNode>()
             + self.runs.capacity() * size_of::<Run>()
             + (self.tiles.capacity() + self.of_block.capacity()) * size_of::<(u32, u32)>()
+            + self.start.capacity() * size_of::<u32>()
     }
 }
 
-/// Visits the rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in
-/// the block, and the number of nodes.
+/// The rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in the block,
+/// and the number of nodes.
 #[inline(always)]
 pub fn shared_rows<const D: usize>(
     edge: usize,
     corner: usize,
-    mut visit: impl FnMut(usize, usize, usize),
-) {
-    let part = |d: usize| if corner >> d & 1 == 1 { (EDGE, edge - EDGE) } else { (0, EDGE) };
+) -> impl Iterator<Item = (usize, usize, usize)> {
+    let part = move |d: usize| if corner >> d & 1 == 1 { (EDGE, edge - EDGE) } else { (0, EDGE) };
     let (from, len) = part(D - 1);
     let (x, nx) = part(0);
-    for i in 0..nx {
+    let (y, ny) = if D == 2 { (0, 1) } else { part(1) };
+    (0..nx * ny).map(move |row| {
+        let (i, j) = (row / ny, row % ny);
         if D == 2 {
-            visit((x + i) * edge + from, i * EDGE, len);
+            ((x + i) * edge + from, i * EDGE, len)
         } else {
-            let (y, ny) = part(1);
-            for j in 0..ny {
-                visit(((x + i) * edge + y + j) * edge + from, (i * EDGE + j) * EDGE, len);
-            }
+            (((x + i) * edge + y + j) * edge + from, (i * EDGE + j) * EDGE, len)
         }
-    }
+    })
 }
 
-/// Copies R0 and R1 of the nodes that the particles of `block` see into a tile.
-pub fn load_tile<const D: usize>(grid: &Grid<D>, block: u32, edge: usize, tile: &mut [TileNode]) {
-    for corner in 0..1 << D {
-        let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
-        shared_rows::<D>(edge, corner, |t, b, len| {
-            let r0 = &grid.velocity[source + b..][..len];
-            let r1 = &grid.increment[source + b..][..len];
-            for (node, (r0, r1)) in tile[t..t + len].iter_mut().zip(r0.iter().zip(r1)) {
-                *node = [*r0, *r1];
+/// Copies the nodes that the particles of `block` see into a tile: R0 in the first four lanes, `second` in the others.
+pub fn load_tile<const D: usize>(
+    isa: Isa,
+    (grid, second): (&Grid<D>, &[Lanes]),
+    block: u32,
+    edge: usize,
+    tile: &mut [TileNode],
+) {
+    isa.dispatch(LoadTile(grid, second, &grid.forward[block as usize], edge, tile));
+}
+
+struct LoadTile<'a, const D: usize>(
+    &'a Grid<D>,
+    &'a [Lanes],
+    &'a Neighbours,
+    usize,
+    &'a mut [TileNode],
+);
+
+impl<const D: usize> Kernel for LoadTile<'_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(grid, second, around, edge, tile) = self;
+        for corner in 0..1 << D {
+            let source = around[corner] as usize * EDGE.pow(D as u32);
+            for (t, b, len) in shared_rows::<D>(edge, corner) {
+                let r0 = &grid.velocity[source + b..][..len];
+                let r1 = &second[source + b..][..len];
+                for ((node, r0), r1) in tile[t..t + len].iter_mut().zip(r0).zip(r1) {
+                    V::join(r0, r1).store_node(node);
+                }
             }
-        });
+        }
     }
 }

@@ -5,6 +5,9 @@ use super::Layout;
 /// Particles in a chunk: its columns and its scratch fit the second-level cache.
 pub const CHUNK: usize = 256;
 
+/// Particles in a task, a number of chunks that one thread works through.
+const TASK: usize = 4 * CHUNK;
+
 /// Most components that a body can have: those of the engine and 128 of a model's state.
 pub const MAX_COMPONENTS: usize = 168;
 
@@ -16,19 +19,28 @@ pub struct ChunkMut<'a> {
     pub first: usize,
     /// Number of particles.
     pub len: usize,
-    columns: [&'a mut [f64]; MAX_COMPONENTS],
+    columns: Columns<'a>,
+    moved: &'a mut [u64],
 }
 
+type Columns<'a> = [&'a mut [f64]; MAX_COMPONENTS];
+
 impl<'a> ChunkMut<'a> {
-    /// The first `len` particles of a table with the given stride.
-    pub fn new(layout: Layout, len: usize, data: &'a mut [f64], stride: usize) -> Self {
+    /// The first `len` particles of a table with the given stride, and their marks (see [`Particles::moved`](super::Particles::moved)).
+    pub fn new(
+        layout: Layout,
+        len: usize,
+        data: &'a mut [f64],
+        stride: usize,
+        moved: &'a mut [u64],
+    ) -> Self {
         let mut columns = std::array::from_fn(|_| Default::default());
         if stride > 0 {
             for (to, column) in columns.iter_mut().zip(data.chunks_exact_mut(stride)) {
                 *to = &mut column[..len];
             }
         }
-        Self { layout, first: 0, len, columns }
+        Self { layout, first: 0, len, columns, moved }
     }
 
     /// One component of all particles of the run.
@@ -43,21 +55,24 @@ impl<'a> ChunkMut<'a> {
         self.columns[component]
     }
 
-    /// `N` components of particle k.
+    /// Marks the particles k + l that may have left their block, for each bit l of `bits`.
     #[inline(always)]
-    pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
-        std::array::from_fn(|c| self.columns[first + c][k])
-    }
-
-    /// Sets `N` components of particle k.
-    #[inline(always)]
-    pub fn set<const N: usize>(&mut self, first: usize, k: usize, values: [f64; N]) {
-        for c in 0..N {
-            self.columns[first + c][k] = values[c];
+    pub fn mark_moved(&mut self, k: usize, bits: u8) {
+        if bits != 0 {
+            let bits = u128::from(bits) << (k % 64); // of two words
+            self.moved[k / 64] |= bits as u64;
+            if let Some(next) = self.moved.get_mut(k / 64 + 1) {
+                *next |= (bits >> 64) as u64;
+            }
         }
     }
 
-    /// The run in two, the first part with `mid` particles.
+    /// `N` components of particle k.
+    pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
+        std::array::from_fn(|c| self.column(first + c)[k])
+    }
+
+    /// The run in two, the first part with `mid` particles, a multiple of 64.
     fn split(mut self, mid: usize) -> (Self, Self) {
         let n = self.layout.components();
         let mut right = std::array::from_fn(|_| Default::default());
@@ -66,7 +81,10 @@ impl<'a> ChunkMut<'a> {
             self.columns[c] = a;
             right[c] = b;
         }
+        let (moved, later) = self.moved.split_at_mut(mid / 64);
+        self.moved = moved;
         let right = Self {
+            moved: later,
             layout: self.layout,
             first: self.first + mid,
             len: self.len - mid,
@@ -75,22 +93,39 @@ impl<'a> ChunkMut<'a> {
         self.len = mid;
         (self, right)
     }
+
+    /// Calls `work` on one chunk of the run after the other.
+    pub fn for_each_chunk(self, mut work: impl FnMut(&mut Self)) {
+        let (mut rest, mut marks, end) = (self.columns, self.moved, self.first + self.len);
+        let columns = std::array::from_fn(|_| Default::default());
+        let mut chunk = Self { columns, moved: &mut [], ..self };
+        for first in (self.first..end).step_by(CHUNK) {
+            (chunk.first, chunk.len) = (first, CHUNK.min(end - first));
+            for c in 0..self.layout.components() {
+                let (now, later) = std::mem::take(&mut rest[c]).split_at_mut(chunk.len);
+                (chunk.columns[c], rest[c]) = (now, later);
+            }
+            let (now, later) = marks.split_at_mut(chunk.len.div_ceil(64));
+            (chunk.moved, marks) = (now, later);
+            work(&mut chunk);
+        }
+    }
 }
 
-/// Calls `work` on every chunk of at most [`CHUNK`] particles and folds the results from left to right, so that neither the
-/// chunks nor the order of the fold depend on the number of threads.
-pub fn for_each_chunk<R: Send>(
-    chunk: ChunkMut<'_>,
+/// Calls `work` on tasks of at most 1024 particles and folds the results from left to right, so that neither the tasks nor the order
+/// of the fold depend on the number of threads.
+pub fn for_each_task<R: Send>(
+    particles: ChunkMut<'_>,
     parallel: bool,
     work: &(impl Fn(ChunkMut<'_>) -> R + Sync),
     fold: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
-    if chunk.len <= CHUNK {
-        return work(chunk);
+    if particles.len <= TASK {
+        return work(particles);
     }
-    let mid = (chunk.len / 2).next_multiple_of(CHUNK);
-    let (left, right) = chunk.split(mid);
-    let run = |part| for_each_chunk(part, parallel, work, fold);
+    let mid = (particles.len / 2).next_multiple_of(TASK);
+    let (left, right) = particles.split(mid);
+    let run = |part| for_each_task(part, parallel, work, fold);
     let (a, b) =
         if parallel { rayon::join(|| run(left), || run(right)) } else { (run(left), run(right)) };
     fold(a, b)

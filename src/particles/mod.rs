@@ -5,15 +5,19 @@
 
 pub mod chunk;
 pub mod fields;
+pub mod moves;
 pub mod seeding;
 
-pub use chunk::{CHUNK, ChunkMut, for_each_chunk};
+pub use chunk::{CHUNK, ChunkMut, for_each_task};
 pub use fields::{FieldInfo, Layout};
+pub use moves::Moves;
+
+use rayon::prelude::*;
 
 use crate::error::{Error, Result, Status};
+use crate::simd::LANES;
 
 const ALIGN: usize = 64;
-const LANES: usize = 8;
 
 /// A buffer of doubles whose first element is 64-byte aligned.
 #[derive(Debug, Default)]
@@ -24,10 +28,10 @@ pub struct Aligned {
 }
 
 impl Aligned {
-    /// A zeroed buffer of `len` doubles, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
+    /// A zeroed buffer of `len` doubles and at least [`LANES`] more behind them, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn zeroed(len: usize) -> Result<Self> {
         let mut memory = Vec::new();
-        let all = len + ALIGN / size_of::<f64>();
+        let all = len + ALIGN / size_of::<f64>() + LANES;
         reserve(&mut memory, all, "the columns of particles")?;
         memory.resize(all, 0.0);
         let start = memory.as_ptr().align_offset(ALIGN);
@@ -47,18 +51,41 @@ impl Aligned {
 
 /// Makes room for `more` elements, or says that there is none.
 pub fn reserve<T>(list: &mut Vec<T>, more: usize, what: &str) -> Result<()> {
-    list.try_reserve(more).map_err(|_| {
-        let gigabytes = more as f64 * size_of::<T>() as f64 * 1e-9;
-        Error::new(
-            Status::OutOfMemory,
-            format!("{what} need {gigabytes:.1} GB, which the system does not give: use a larger spacing or fewer particles"),
-        )
-    })
+    list.try_reserve(more).map_err(|_| no_memory::<T>(more, what))
+}
+
+/// Makes room for `all` elements in all and not more, or says that there is none.
+pub fn reserve_exact<T>(list: &mut Vec<T>, all: usize, what: &str) -> Result<()> {
+    let more = all.saturating_sub(list.len());
+    list.try_reserve_exact(more).map_err(|_| no_memory::<T>(more, what))
+}
+
+/// Empties a list whose length comes and goes and makes room for `n` elements; if that takes more memory, for twice as many, so that it
+/// seldom does.
+pub fn refill<T>(list: &mut Vec<T>, n: usize, what: &str) -> Result<()> {
+    list.clear();
+    if n <= list.capacity() { Ok(()) } else { reserve_exact(list, 2 * n + 16, what) }
+}
+
+fn no_memory<T>(more: usize, what: &str) -> Error {
+    let gigabytes = more as f64 * size_of::<T>() as f64 * 1e-9;
+    Error::new(
+        Status::OutOfMemory,
+        format!(
+            "{what} need {gigabytes:.1} GB, which the system does not give: use a larger spacing or fewer particles"
+        ),
+    )
 }
 
 /// Rounds a number of points up to whole groups of 8.
 pub const fn padded(n: usize) -> usize {
     n.next_multiple_of(LANES)
+}
+
+/// Distance between the columns of `n` particles: whole groups of 8, and an odd number of them, so that the columns of a power of two of
+/// particles do not fall into the same sets of the cache.
+const fn stride_of(n: usize) -> usize {
+    (n.div_ceil(LANES) | 1) * LANES
 }
 
 /// The particles of one body.
@@ -68,6 +95,9 @@ pub struct Particles {
     pub layout: Layout,
     /// Persistent ids, in storage order: the place in which the host gave the particle.
     pub id: Vec<i64>,
+    /// Bit k % 64 of word k / 64 is set if particle k may have left its block since particles were last sorted into blocks. Chunks
+    /// of a multiple of 64 particles have words of their own.
+    pub moved: Vec<u64>,
     stride: usize,
     data: Aligned,
     scratch: Aligned,
@@ -76,14 +106,18 @@ pub struct Particles {
 impl Particles {
     /// `count` particles with all columns zero and ids 0, 1, ...
     pub fn new(layout: Layout, count: usize) -> Result<Self> {
-        let stride = padded(count);
+        let stride = stride_of(count);
         let mut id = Vec::new();
         reserve(&mut id, count, "the ids of particles")?;
         id.extend(0..count as i64);
+        let mut moved = Vec::new();
+        reserve(&mut moved, count.div_ceil(64), "the marks of moved particles")?;
+        moved.resize(count.div_ceil(64), 0);
         Ok(Self {
             data: Aligned::zeroed(stride * layout.components())?,
             scratch: Aligned::zeroed(stride)?,
             id,
+            moved,
             layout,
             stride,
         })
@@ -125,6 +159,13 @@ impl Particles {
         &mut self.data.as_mut_slice()[first * self.stride..(first + components) * self.stride]
     }
 
+    /// `N` components of the particles `first..end`, each followed by [`LANES`] more doubles, so that eight can be read at a time.
+    pub fn read<const N: usize>(&self, component: usize, first: usize, end: usize) -> [&[f64]; N] {
+        let data = &self.data.memory[self.data.start..];
+        let column = |c: usize| &data[c * self.stride..][first..end + LANES];
+        std::array::from_fn(|c| column(component + c))
+    }
+
     /// `N` components of particle k.
     #[inline(always)]
     pub fn get<const N: usize>(&self, first: usize, k: usize) -> [f64; N] {
@@ -135,30 +176,60 @@ impl Particles {
     /// The ids, and the whole table as a chunk, to be split among threads.
     pub fn ids_and_chunk(&mut self) -> (&[i64], ChunkMut<'_>) {
         let n = self.len();
-        (&self.id, ChunkMut::new(self.layout, n, self.data.as_mut_slice(), self.stride))
+        let data = self.data.as_mut_slice();
+        (&self.id, ChunkMut::new(self.layout, n, data, self.stride, &mut self.moved))
     }
 
-    /// Puts particle `order[k]` at place k, one column at a time.
-    pub fn permute(&mut self, order: &[u32]) {
-        let (stride, n) = (self.stride, self.len());
-        let scratch = &mut self.scratch.as_mut_slice()[..n];
-        for column in self.data.as_mut_slice().chunks_exact_mut(stride) {
-            for (to, from) in scratch.iter_mut().zip(order) {
-                *to = column[*from as usize];
+    /// The columns of the positions, and the marks of moved particles, to write.
+    pub fn positions_and_moved<const D: usize>(&mut self) -> ([&[f64]; D], &mut [u64]) {
+        let (data, n) = (self.data.as_slice(), self.id.len());
+        let column = |d: usize| &data[(self.layout.position + d) * self.stride..][..n];
+        (std::array::from_fn(column), &mut self.moved)
+    }
+
+    /// Puts particle `from[i]` at place `to[i]` for all i at once; the same places stand in both lists. With `parallel` several
+    /// columns move at a time.
+    pub fn rearrange(&mut self, from: &[u32], to: &[u32], parallel: bool) {
+        let (stride, moves) = (self.stride, from.len());
+        if moves == 0 {
+            return;
+        }
+        let scratch = self.scratch.as_mut_slice();
+        let data = self.data.as_mut_slice();
+        let columns = data.len() / stride;
+        let at_a_time = if parallel { columns.min(stride / moves) } else { 1 };
+        let group = stride * columns.div_ceil(at_a_time);
+        let work = |(columns, scratch): (&mut [f64], &mut [f64])| {
+            for column in columns.chunks_exact_mut(stride) {
+                move_all(column, scratch, (from, to));
             }
-            column[..n].copy_from_slice(scratch);
+        };
+        if at_a_time > 1 {
+            data.par_chunks_mut(group).zip(scratch.par_chunks_mut(moves)).for_each(work);
+        } else {
+            work((data, &mut scratch[..moves]));
         }
-        for (to, from) in scratch.iter_mut().zip(order) {
-            *to = f64::from_bits(self.id[*from as usize] as u64);
+        for (piece, from) in scratch.iter_mut().zip(from) {
+            *piece = f64::from_bits(self.id[*from as usize] as u64);
         }
-        for (to, from) in self.id.iter_mut().zip(scratch) {
-            *to = from.to_bits() as i64;
+        for (to, piece) in to.iter().zip(scratch) {
+            self.id[*to as usize] = piece.to_bits() as i64;
         }
     }
 
     /// Memory of the columns [bytes].
     pub fn bytes(&self) -> usize {
-        let doubles = self.data.memory.len() + self.scratch.memory.len() + self.id.len();
-        doubles * size_of::<f64>()
+        let doubles = self.data.memory.len() + self.scratch.memory.len();
+        (doubles + self.id.len() + self.moved.len()) * size_of::<f64>()
+    }
+}
+
+/// Puts element `from[i]` at place `to[i]` for all i at once.
+fn move_all(column: &mut [f64], scratch: &mut [f64], (from, to): (&[u32], &[u32])) {
+    for (piece, from) in scratch.iter_mut().zip(from) {
+        *piece = column[*from as usize];
+    }
+    for (to, piece) in to.iter().zip(scratch) {
+        column[*to as usize] = *piece;
     }
 }

@@ -1,6 +1,7 @@
 //! Linear shape function: w(r) = 1 − |r| on |r| < 1, r in units of the spacing.
 
-use super::stencil::{Axis, ShapeFunction, floor};
+use super::stencil::{Axis, ShapeFunction};
+use crate::simd::Real;
 
 /// Piecewise linear hat function.
 pub struct Linear;
@@ -10,10 +11,11 @@ impl ShapeFunction<2> for Linear {
     const MOMENT: Option<f64> = None;
 
     #[inline(always)]
-    fn axis(xi: f64) -> Axis<2> {
-        let first = floor(xi);
+    fn axis<R: Real>(xi: R) -> Axis<R, 2> {
+        let (one, least) = (R::splat(1.0), R::splat(f64::EPSILON));
+        let first = xi.floor();
         // On a node plane the far node would have no mass and hence no velocity, but its slope would still count.
-        let f = (xi - first).clamp(f64::EPSILON, 1.0 - f64::EPSILON);
-        Axis { first, fraction: f, w: [1.0 - f, f], dw: [-1.0, 1.0] }
+        let f = (xi - first).max(least).min(one - least);
+        Axis { first, fraction: f, w: [one - f, f], dw: [-one, one] }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360.
 
-use super::stencil::{Axis, ShapeFunction, floor};
+use super::stencil::{Axis, ShapeFunction};
+use crate::simd::Real;
 
 /// Quadratic B-spline.
 pub struct QuadraticBspline;
@@ -12,15 +13,16 @@ impl ShapeFunction<3> for QuadraticBspline {
     const MOMENT: Option<f64> = Some(0.25);
 
     #[inline(always)]
-    fn axis(xi: f64) -> Axis<3> {
-        let first = floor(xi - Self::FIRST_OFFSET);
+    fn axis<R: Real>(xi: R) -> Axis<R, 3> {
+        let half = R::splat(0.5);
+        let first = (xi - half).floor();
         let f = xi - first; // in [½, 3/2)
-        let (a, b, c) = (1.5 - f, f - 1.0, f - 0.5);
+        let (a, b, c) = (R::splat(1.5) - f, f - R::splat(1.0), f - half);
         Axis {
             first,
             fraction: f,
-            w: [0.5 * a * a, 0.75 - b * b, 0.5 * c * c],
-            dw: [-a, -2.0 * b, c],
+            w: [half * a * a, R::splat(0.75) - b * b, half * c * c],
+            dw: [-a, -(b + b), c],
         }
     }
 }

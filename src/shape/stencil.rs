@@ -1,27 +1,18 @@
-//! The stencil of a particle: nodes, weights and gradients as a tensor product of one-dimensional functions.
+//! The stencil of particles: nodes, weights and gradients as a tensor product of one-dimensional functions.
 
-/// Weights of a particle along one axis. Node `first + n` has weight `w[n]` and slope `dw[n]` [1/h].
+use crate::simd::Real;
+
+/// Weights along one axis, of one particle or of eight. Node `first + n` has weight `w[n]` and slope `dw[n]` [1/h].
 #[derive(Clone, Copy, Debug)]
-pub struct Axis<const N: usize> {
+pub struct Axis<R, const N: usize> {
     /// Lowest node of the stencil.
-    pub first: f64,
+    pub first: R,
     /// Position above the lowest node, in units of the spacing.
-    pub fraction: f64,
+    pub fraction: R,
     /// Weights.
-    pub w: [f64; N],
+    pub w: [R; N],
     /// Derivatives of the weights with respect to ξ = x / h.
-    pub dw: [f64; N],
-}
-
-/// The largest whole number not above x, for |x| < 2^51; not finite if x is not.
-///
-/// Adding and subtracting 1.5 · 2^52 rounds to the nearest whole number. The baseline instruction set has no rounding
-/// instruction, and the library call costs more than the rest of a weight.
-#[inline(always)]
-pub fn floor(x: f64) -> f64 {
-    const WHOLE: f64 = 6_755_399_441_055_744.0;
-    let nearest = (x + WHOLE) - WHOLE;
-    if nearest > x { nearest - 1.0 } else { nearest }
+    pub dw: [R; N],
 }
 
 /// A shape function of one axis with `N` nodes.
@@ -31,58 +22,38 @@ pub trait ShapeFunction<const N: usize> {
     /// ∫ w (x_i − x_p)² over the nodes, in units of h², if it is the same everywhere (the matrix D of APIC).
     const MOMENT: Option<f64>;
     /// Weights and slopes at the position ξ (in units of the spacing).
-    fn axis(xi: f64) -> Axis<N>;
+    fn axis<R: Real>(xi: R) -> Axis<R, N>;
 }
 
-/// Weights of a particle over the N^D nodes of its stencil.
+/// Weights over the N^D nodes of a stencil.
 #[derive(Clone, Copy, Debug)]
-pub struct Stencil<const N: usize, const D: usize> {
+pub struct Stencil<R, const N: usize, const D: usize> {
     /// The axes, x first.
-    pub axes: [Axis<N>; D],
+    pub axes: [Axis<R, N>; D],
 }
 
-/// A run of `N` nodes along the last axis: what the outer axes contribute.
-#[derive(Clone, Copy, Debug)]
-pub struct Row {
-    /// Nodes from the lowest node of the stencil to the first node of the row, in a tile of the given edge.
-    pub offset: usize,
-    /// Product of the outer weights.
-    pub w: f64,
-    /// Derivatives of that product along the outer axes [1/h].
-    pub dw: [f64; 2],
-    /// Position of the row in the stencil along the outer axes.
-    pub node: [usize; 2],
-}
-
-impl<const N: usize, const D: usize> Stencil<N, D> {
+impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
     /// The stencil at ξ (in units of the spacing).
-    pub fn new<S: ShapeFunction<N>>(xi: [f64; D]) -> Self {
-        Self { axes: xi.map(S::axis) }
-    }
-
-    /// The last axis, along which rows run.
-    pub fn last(&self) -> &Axis<N> {
-        &self.axes[D - 1]
-    }
-
-    /// Visits the rows of the stencil in a tile with `edge` nodes an axis, in storage order.
     #[inline(always)]
-    pub fn rows(&self, edge: usize, mut visit: impl FnMut(Row)) {
-        let x = &self.axes[0];
-        for i in 0..N {
-            if D == 2 {
-                visit(Row { offset: i * edge, w: x.w[i], dw: [x.dw[i], 0.0], node: [i, 0] });
-            } else {
-                let y = &self.axes[1];
-                for j in 0..N {
-                    visit(Row {
-                        offset: (i * edge + j) * edge,
-                        w: x.w[i] * y.w[j],
-                        dw: [x.dw[i] * y.w[j], x.w[i] * y.dw[j]],
-                        node: [i, j],
-                    });
-                }
-            }
+    pub fn new<S: ShapeFunction<N>>(xi: [R; D]) -> Self {
+        let mut axes = [S::axis(xi[0]); D];
+        for d in 1..D {
+            axes[d] = S::axis(xi[d]);
+        }
+        Self { axes }
+    }
+}
+
+impl<const N: usize, const D: usize> Stencil<f64, N, D> {
+    /// Visits the nodes in storage order: index, weight, gradient of the weight [1/h].
+    pub fn nodes(&self, mut visit: impl FnMut([i64; D], f64, [f64; D])) {
+        for flat in 0..N.pow(D as u32) {
+            let place = |d: usize| flat / N.pow((D - 1 - d) as u32) % N;
+            let index = std::array::from_fn(|d| self.axes[d].first as i64 + place(d) as i64);
+            let w = |d: usize| self.axes[d].w[place(d)];
+            let slope = |d: usize, e: usize| if d == e { self.axes[e].dw[place(e)] } else { w(e) };
+            let dw = std::array::from_fn(|d| (0..D).map(|e| slope(d, e)).product());
+            visit(index, (0..D).map(w).product(), dw);
         }
     }
 }
@@ -94,39 +65,24 @@ mod tests {
 
     /// Sums over the nodes of a 3D stencil: Σ w, Σ w (x_i − x_p), Σ ∇w, Σ x_i ⊗ ∇w − I, all of which have known values.
     fn defects<const N: usize, S: ShapeFunction<N>>(xi: [f64; 3]) -> f64 {
-        let stencil = Stencil::<N, 3>::new::<S>(xi);
+        let stencil = Stencil::<f64, N, 3>::new::<S>(xi);
         let mut worst = [0.0; 16];
         worst[0] = -1.0;
         for a in 0..3 {
             worst[4 + 4 * a + a] = -1.0;
         }
-        stencil.rows(8, |row| {
-            for k in 0..N {
-                let z = stencil.last();
-                let w = row.w * z.w[k];
-                let dw = [row.dw[0] * z.w[k], row.dw[1] * z.w[k], row.w * z.dw[k]];
-                let node = [row.node[0], row.node[1], k];
-                worst[0] += w;
-                for a in 0..3 {
-                    let r = node[a] as f64 - stencil.axes[a].fraction;
-                    worst[1 + a] += w * r;
-                    for b in 0..3 {
-                        worst[4 + 4 * a + b] += r * dw[b];
-                    }
-                    worst[7 + 4 * a] += dw[a];
+        stencil.nodes(|index, w, dw| {
+            worst[0] += w;
+            for a in 0..3 {
+                let r = index[a] as f64 - stencil.axes[a].first - stencil.axes[a].fraction;
+                worst[1 + a] += w * r;
+                for b in 0..3 {
+                    worst[4 + 4 * a + b] += r * dw[b];
                 }
+                worst[7 + 4 * a] += dw[a];
             }
         });
         worst.into_iter().fold(0.0, |m, d| f64::max(m, f64::abs(d)))
-    }
-
-    #[test]
-    fn the_floor_of_a_position_is_that_of_the_library() {
-        for x in [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 2.5, -2.5, 1e9 + 0.75, -1e9 - 0.25, -1e-300] {
-            assert_eq!(floor(x), x.floor(), "{x}");
-            assert_eq!(floor(f64::next_down(x)), f64::next_down(x).floor(), "below {x}");
-        }
-        assert!(!floor(f64::NAN).is_finite() && !floor(f64::INFINITY).is_finite());
     }
 
     #[test]

@@ -32,7 +32,8 @@ pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
     let count = world.walls.len();
     for (w, entry) in world.walls.iter_mut().enumerate() {
         let mut total = [0.0; 3];
-        for impulse in world.impulses.iter().skip(w).step_by(count) {
+        for slot in world.grid.order() {
+            let impulse = world.impulses[*slot as usize * count + w];
             for a in 0..D {
                 total[a] += impulse[a];
             }

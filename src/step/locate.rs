@@ -1,18 +1,27 @@
 //! Stage 1: every particle stands in the run of its block; blocks appear and vanish with their particles.
 //!
-//! A particle belongs to the block of the lowest node of its stencil. If no particle has left its block nothing is done; else
-//! all bodies are sorted by block (Morton order) and cell with a stable counting sort.
+//! A particle belongs to the block of the lowest node of its stencil. Particles that may have left their block are marked; if none has,
+//! nothing is done. Else a [`Plan`] says which runs there will be and which particles change places for that:
+//!
+//! * [`movers`]: only those that left their block, and those that must make room. The order inside a block becomes stale.
+//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when half of them would move.
+//!
+//! A plan is made without a change to the world, so that particles outside the grid are an error that changes nothing. Both
+//! ways depend on positions and on the order of particles alone, not on slots of the grid, its policy or threads.
 
-use std::collections::HashMap;
+pub mod full;
+pub mod movers;
 
 use rayon::prelude::*;
 
 use crate::error::{Error, Place, Result, Status};
-use crate::grid::key::{block_nodes, morton_order};
-use crate::grid::{EDGE, GridPolicy, Key, Run};
-use crate::particles::reserve;
-use crate::shape::stencil::floor;
+use crate::grid::{EDGE, Grid, GridPolicy, Key, Run};
+use crate::particles::{Moves, refill, reserve};
+use crate::simd::Real;
 use crate::world::state::{Body, Space, State};
+
+use full::{Sorter, plan_sort};
+use movers::{Regrouper, plan_moves};
 
 /// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther away a double is too coarse
 /// for the small moves of a step.
@@ -21,25 +30,110 @@ pub const FARTHEST: f64 = 1e8;
 /// What memory is for, if there is none.
 const SORTING: &str = "the buffers of the sort";
 
-/// Buffers of the sort, kept from step to step.
+/// Words of marks that a thread looks at together.
+const WORDS: usize = 64;
+
+/// Plan and buffers of the sort, kept from step to step.
 #[derive(Debug, Default)]
 pub struct Sorting<const D: usize> {
-    slot: Vec<u32>,
-    order: Vec<u32>,
-    count: Vec<u32>,
-    number: HashMap<Key<D>, u32>,
-    owners: Vec<Key<D>>,
-    rank: Vec<u32>,
+    plan: Plan<D>,
+    sorter: Sorter<D>,
+    regrouper: Regrouper<D>,
 }
 
-/// Sorts particles into blocks if any has left its own.
-pub fn locate<const D: usize>(world: &mut State<D>) -> Result<()> {
-    if !world.regroup && nobody_moved(world) {
-        world.grid.no_change();
-        return Ok(());
+/// Runs that there will be, and how the particles get there.
+#[derive(Debug, Default)]
+pub struct Plan<const D: usize> {
+    /// Runs of all bodies; those in new blocks have no valid slot.
+    runs: Vec<Run>,
+    /// For each run the key of its block.
+    keys: Vec<Key<D>>,
+    /// Moves of all bodies, with places counted from the first particle of the body.
+    moves: Moves,
+    /// For each body the ends of its runs and of its moves.
+    ends: Vec<(usize, usize)>,
+    /// Whether a run is in a block that had none of this body, or a block lost its run.
+    blocks_change: bool,
+}
+
+impl<const D: usize> Plan<D> {
+    /// An empty plan, with room for all particles to move and for about as many runs as there are.
+    fn clear(&mut self, world: &State<D>) -> Result<()> {
+        let runs = world.bodies.iter().map(|body| body.runs.len()).sum();
+        self.blocks_change = false;
+        self.moves.clear();
+        refill(&mut self.runs, runs, SORTING)?;
+        refill(&mut self.keys, runs, SORTING)?;
+        refill(&mut self.ends, world.bodies.len(), SORTING)?;
+        reserve(&mut self.moves.from, world.particle_count(), SORTING)?;
+        reserve(&mut self.moves.to, world.particle_count(), SORTING)
     }
-    regroup(world)?;
-    world.regroup = false;
+
+    /// Adds a run of the body in hand.
+    fn push(&mut self, run: Run, key: Key<D>) -> Result<()> {
+        reserve(&mut self.runs, 1, SORTING)?;
+        reserve(&mut self.keys, 1, SORTING)?;
+        self.runs.push(run);
+        self.keys.push(key);
+        Ok(())
+    }
+
+    /// Ends the body in hand.
+    fn end_body(&mut self) {
+        self.ends.push((self.runs.len(), self.moves.from.len()));
+    }
+}
+
+/// Moves particles into the runs of their blocks if any has left its own.
+pub fn locate<const D: usize>(world: &mut State<D>) -> Result<()> {
+    if !world.regroup {
+        if world.rescan || world.options.grid_policy == GridPolicy::Static {
+            mark_moved(world);
+        }
+        if world.bodies.iter().all(|body| body.particles.moved.iter().all(|word| *word == 0)) {
+            world.grid.no_change();
+            world.rescan = false;
+            return Ok(());
+        }
+    }
+    let mut sorting = std::mem::take(&mut world.sorting);
+    let result = make_plan(world, &mut sorting).and_then(|()| carry_out(world, &mut sorting.plan));
+    world.sorting = sorting;
+    result
+}
+
+fn make_plan<const D: usize>(world: &State<D>, sorting: &mut Sorting<D>) -> Result<()> {
+    let Sorting { plan, sorter, regrouper } = sorting;
+    if world.regroup || !plan_moves(world, regrouper, plan)? {
+        plan_sort(world, sorter, plan)?;
+    }
+    Ok(())
+}
+
+/// Makes the blocks that the plan needs, moves the particles and deals the runs out to tiles.
+fn carry_out<const D: usize>(world: &mut State<D>, plan: &mut Plan<D>) -> Result<()> {
+    world.regroup = true; // until it is done: without memory the runs would not belong to the new blocks
+    world.grid.no_change();
+    if plan.blocks_change {
+        match world.options.grid_policy {
+            GridPolicy::Static => {}
+            policy => world.grid.set_owners(&plan.keys, policy == GridPolicy::GrowOnly)?,
+        }
+        for (run, key) in plan.runs.iter_mut().zip(&plan.keys) {
+            run.block = world.grid.find(key).expect("owners are active blocks");
+        }
+    }
+    let (mut run, mut step) = (0, 0);
+    for (body, (end, last)) in world.bodies.iter_mut().zip(&plan.ends) {
+        refill(&mut body.runs, end - run, SORTING)?;
+        body.runs.extend_from_slice(&plan.runs[run..*end]);
+        let (from, to) = (&plan.moves.from[step..*last], &plan.moves.to[step..*last]);
+        body.particles.rearrange(from, to, world.parallel);
+        body.particles.moved.fill(0);
+        (run, step) = (*end, *last);
+    }
+    world.tiles.assign(plan.runs.iter().copied(), world.grid.place(), D)?;
+    (world.regroup, world.rescan) = (false, false);
     Ok(())
 }
 
@@ -50,7 +144,7 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)>
     let mut key = [0; D];
     let mut cell = 0;
     for d in 0..D {
-        let first = floor(xi[d] - space.first_offset);
+        let first = Real::floor(xi[d] - space.first_offset);
         if !(first.abs() < FARTHEST) {
             return None;
         }
@@ -61,69 +155,22 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)>
     Some((key, cell))
 }
 
-fn nobody_moved<const D: usize>(world: &State<D>) -> bool {
-    let (space, keys) = (world.space(), world.grid.keys());
-    let stays = |body: &Body, run: &Run| {
-        let key = keys[run.block as usize];
-        let at = body.particles.layout.position;
-        let inside = |k: u32| place(&space, body.particles.get::<D>(at, k as usize));
-        (run.first..run.end).all(|k| inside(k).is_some_and(|(of_particle, _)| of_particle == key))
-    };
-    world.bodies.iter().all(|body| {
-        if world.parallel() {
-            body.runs.par_iter().all(|run| stays(body, run))
-        } else {
-            body.runs.iter().all(|run| stays(body, run))
-        }
-    })
-}
-
-fn regroup<const D: usize>(world: &mut State<D>) -> Result<()> {
-    let mut sorting = std::mem::take(&mut world.sorting);
-    let result = number_blocks(world, &mut sorting).and_then(|()| {
-        world.regroup = true; // until it is done: without memory the runs would not belong to the new blocks
-        rank_owners(&mut sorting);
-        match world.options.grid_policy {
-            GridPolicy::Static => world.grid.no_change(),
-            policy => world.grid.set_blocks(&sorting.owners, policy == GridPolicy::GrowOnly)?,
-        }
-        sort_bodies(world, &mut sorting)?;
-        let runs = world.bodies.iter().flat_map(|body| body.runs.iter().copied());
-        world.tiles.assign(runs, world.grid.keys().len(), D)
-    });
-    world.sorting = sorting;
-    result
-}
-
-/// Numbers the blocks in the order in which particles meet them; `slot` becomes number × cells of a block + cell.
-fn number_blocks<const D: usize>(world: &State<D>, sorting: &mut Sorting<D>) -> Result<()> {
-    let space = world.space();
-    let cells = block_nodes(D) as u32;
-    sorting.slot.clear();
-    sorting.number.clear();
-    sorting.owners.clear();
-    reserve(&mut sorting.slot, world.particle_count(), SORTING)?;
-    let mut last: Option<(Key<D>, u32)> = None;
-    for body in &world.bodies {
-        let at = body.particles.layout.position;
-        for k in 0..body.particles.len() {
-            let x = body.particles.get::<D>(at, k);
-            let found = place(&space, x).filter(|_| world.inside_box(&x));
-            let Some((key, cell)) = found else { return Err(outside(world, body, k, x)) };
-            let number = match last {
-                Some((same, number)) if same == key => number,
-                _ => *sorting.number.entry(key).or_insert_with(|| {
-                    sorting.owners.push(key);
-                    sorting.owners.len() as u32 - 1
-                }),
-            };
-            last = Some((key, number));
-            sorting.slot.push(number * cells + cell);
-        }
+/// Block and cell of particle k of a body, or the error that it is outside the grid.
+#[inline(always)]
+fn place_inside<const D: usize>(
+    world: &State<D>,
+    body: &Body,
+    space: &Space<D>,
+    k: usize,
+) -> Result<(Key<D>, u32)> {
+    let x = body.particles.get::<D>(body.particles.layout.position, k);
+    match place(space, x) {
+        Some(found) if world.inside_box(&x) => Ok(found),
+        _ => Err(outside(world, body, k, x)),
     }
-    Ok(())
 }
 
+#[cold]
 fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D]) -> Error {
     let id = body.particles.id[k];
     let limit = match world.options.grid_policy {
@@ -139,71 +186,80 @@ fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D])
     .at(Place { particle: Some(id), body: Some(body.id), ..world.place() })
 }
 
-/// Sorts the owners along the Morton curve; `rank[number]` becomes the place of a block among them.
-fn rank_owners<const D: usize>(sorting: &mut Sorting<D>) {
-    sorting.owners.sort_unstable_by(morton_order);
-    sorting.rank.clear();
-    sorting.rank.resize(sorting.owners.len(), 0);
-    for (rank, key) in sorting.owners.iter().enumerate() {
-        sorting.rank[sorting.number[key] as usize] = rank as u32;
-    }
-}
-
-/// Sorts each body by block and cell. Particles of one cell keep their order.
-fn sort_bodies<const D: usize>(world: &mut State<D>, sorting: &mut Sorting<D>) -> Result<()> {
-    let cells = block_nodes(D) as u32;
-    let mut first = 0;
-    for (b, body) in world.bodies.iter_mut().enumerate() {
-        let n = body.particles.len();
-        let slots = &mut sorting.slot[first..first + n];
-        first += n;
-        for slot in slots.iter_mut() {
-            *slot = sorting.rank[(*slot / cells) as usize] * cells + *slot % cells;
-        }
-        let slots = &*slots;
-        let all = sorting.owners.len() * cells as usize;
-        let order = &mut sorting.order;
-        order.clear();
-        reserve(order, n, SORTING)?;
-        if n < all / 8 {
-            // a small body in a large grid: counting would cost the whole grid
-            order.extend(0..n as u32);
-            order.sort_unstable_by_key(|k| (slots[*k as usize], *k));
+/// Marks every particle that may have left the block of its run, or the box of a static grid, and takes other marks away.
+fn mark_moved<const D: usize>(world: &mut State<D>) {
+    let (space, parallel) = (world.space(), world.parallel);
+    let limits = match world.options.grid_policy {
+        GridPolicy::Static => Some((world.options.box_min, world.options.box_max)),
+        _ => None,
+    };
+    let State { bodies, grid, .. } = world;
+    for body in bodies {
+        let Body { particles, runs, .. } = body;
+        let (columns, moved) = particles.positions_and_moved::<D>();
+        let mark = |(n, words): (usize, &mut [u64])| {
+            words.fill(0);
+            let (first, end) = (64 * WORDS * n, 64 * WORDS * n + 64 * words.len());
+            let start = runs.partition_point(|run| run.end as usize <= first);
+            for run in runs[start..].iter().take_while(|run| (run.first as usize) < end) {
+                let inside = sure_inside(grid, &space, run.block, limits);
+                let range = (first.max(run.first as usize), end.min(run.end as usize));
+                mark_run(&columns, &inside, range, words, first);
+            }
+        };
+        if parallel {
+            moved.par_chunks_mut(WORDS).enumerate().for_each(mark);
         } else {
-            order.resize(n, 0);
-            sorting.count.clear();
-            reserve(&mut sorting.count, all + 1, SORTING)?;
-            counting_sort(slots, all, &mut sorting.count, order);
-        }
-        body.runs.clear();
-        let rank = |k: &u32| slots[*k as usize] / cells;
-        for run in order.chunk_by(|a, b| rank(a) == rank(b)) {
-            let first = body.runs.last().map_or(0, |r| r.end);
-            let key = sorting.owners[rank(&run[0]) as usize];
-            let block = world.grid.find(&key).expect("owners are active blocks");
-            let end = first + run.len() as u32;
-            body.runs.push(Run { block, body: b as u32, first, end });
-        }
-        if !order.is_sorted() {
-            body.particles.permute(order);
+            moved.chunks_mut(WORDS).enumerate().for_each(mark);
         }
     }
-    Ok(())
 }
 
-/// The stable order of `slots`, whose values are below `values`.
-fn counting_sort(slots: &[u32], values: usize, count: &mut Vec<u32>, order: &mut [u32]) {
-    count.clear();
-    count.resize(values + 1, 0);
-    for slot in slots {
-        count[*slot as usize + 1] += 1;
+/// Positions that are in a block in spite of all round-off [m], lower and upper corner.
+fn sure_inside<const D: usize>(
+    grid: &Grid<D>,
+    space: &Space<D>,
+    slot: u32,
+    limits: Option<([f64; 3], [f64; 3])>,
+) -> ([f64; D], [f64; D]) {
+    let key = grid.keys()[slot as usize];
+    let (mut low, mut high) = ([0.0; D], [0.0; D]);
+    for d in 0..D {
+        let lowest = f64::from(key[d]) * EDGE as f64 + space.first_offset;
+        let edge = |cells: f64| space.origin[d] + (lowest + cells) * space.spacing;
+        // positions, their differences to the origin and their quotients by the spacing are each exact to 2^-53
+        let scale = space.origin[d].abs() + (lowest.abs() + EDGE as f64) * space.spacing;
+        let margin = 64.0 * f64::EPSILON * scale;
+        (low[d], high[d]) = (edge(0.0) + margin, edge(EDGE as f64) - margin);
+        if let Some((min, max)) = limits {
+            (low[d], high[d]) = (low[d].max(min[d]), high[d].min(max[d]));
+        }
     }
-    for s in 1..count.len() {
-        count[s] += count[s - 1];
-    }
-    for (k, slot) in slots.iter().enumerate() {
-        let to = &mut count[*slot as usize];
-        order[*to as usize] = k as u32;
-        *to += 1;
+    (low, high)
+}
+
+/// Marks the particles of a range whose positions are not between the corners; `words` begins with the mark of particle `first`.
+fn mark_run<const D: usize>(
+    columns: &[&[f64]; D],
+    (low, high): &([f64; D], [f64; D]),
+    (start, end): (usize, usize),
+    words: &mut [u64],
+    first: usize,
+) {
+    let mut k = start;
+    while k < end {
+        let stop = end.min((k / 64 + 1) * 64);
+        let mut flags = [0u64; 64];
+        for d in 0..D {
+            let column = &columns[d][k..stop];
+            for (flag, x) in flags.iter_mut().zip(column) {
+                *flag |= u64::from(!(low[d] <= *x && *x <= high[d]));
+            }
+        }
+        if flags.iter().fold(0, |any, flag| any | flag) != 0 {
+            let bits = flags.iter().rev().fold(0, |bits, flag| bits << 1 | flag);
+            words[(k - first) / 64] |= bits << (k % 64);
+        }
+        k = stop;
     }
 }

@@ -11,33 +11,70 @@
 use rayon::prelude::*;
 
 use crate::grid::Lanes;
+use crate::simd::{Kernel, LANES, Vector};
 use crate::world::state::State;
+
+/// Nodes that one thread takes at a time.
+const NODES: usize = 1024;
 
 /// Turns momentum and force into velocity (R0) and its increment (R1).
 pub fn update_grid<const D: usize>(world: &mut State<D>, dt: f64) {
     let (gravity, damping) = (world.options.gravity, world.options.damping);
-    let node = |((r0, r1), force): ((&mut Lanes, &mut Lanes), &Lanes)| {
-        let mass = r0[0];
-        if mass == 0.0 {
-            (*r0, *r1) = ([0.0; 4], [0.0; 4]);
-            return;
-        }
-        for a in 1..=D {
-            let before = r0[a] / mass;
-            let mut acceleration = force[a] / mass + gravity[a - 1];
-            if damping > 0.0 && before != 0.0 {
-                acceleration -= damping * acceleration.abs() * before.signum();
-            }
-            r1[a] = dt * acceleration;
-            r0[a] = before + r1[a];
-        }
+    let mut g = [0.0; LANES]; // of two nodes
+    for a in 0..D {
+        (g[1 + a], g[5 + a]) = (gravity[a], gravity[a]);
+    }
+    let isa = world.context.isa();
+    let update = |((r0, r1), force): ((&mut [Lanes], &mut [Lanes]), &[Lanes])| {
+        isa.dispatch(Update { r0, r1, force, g, damping, dt });
     };
     let grid = &mut world.grid;
     if world.parallel {
-        let records = grid.velocity.par_iter_mut().zip(&mut grid.increment).zip(&grid.force);
-        records.with_min_len(4096).for_each(node);
+        let records = grid.velocity.par_chunks_mut(NODES).zip(grid.increment.par_chunks_mut(NODES));
+        records.zip(grid.force.par_chunks(NODES)).for_each(update);
     } else {
-        let records = grid.velocity.iter_mut().zip(&mut grid.increment).zip(&grid.force);
-        records.for_each(node);
+        update(((&mut grid.velocity, &mut grid.increment), &grid.force));
     }
+}
+
+struct Update<'a> {
+    r0: &'a mut [Lanes],
+    r1: &'a mut [Lanes],
+    force: &'a [Lanes],
+    g: [f64; LANES],
+    damping: f64,
+    dt: f64,
+}
+
+impl Kernel for Update<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let (g, dt) = (V::from_array(self.g), V::splat(self.dt));
+        let forces = self.force.as_flattened().chunks_exact(LANES);
+        let r0 = self.r0.as_flattened_mut().chunks_exact_mut(LANES);
+        let r1 = self.r1.as_flattened_mut().chunks_exact_mut(LANES);
+        for ((r0, r1), force) in r0.zip(r1).zip(forces) {
+            let (m, n) = (r0[0], r0[4]);
+            let inverse = V::halves(inverse(m), inverse(n));
+            let present = V::halves(f64::from(m > 0.0), f64::from(n > 0.0));
+            let before = V::load(r0) * inverse;
+            let mut acceleration = V::load(force).mul_add(inverse, g * present);
+            if self.damping > 0.0 {
+                let sign = before / before.abs().max(V::splat(f64::MIN_POSITIVE));
+                let resistance = V::splat(self.damping) * acceleration.abs() * sign;
+                acceleration = acceleration - resistance;
+            }
+            let change = acceleration * dt;
+            change.store(r1);
+            (before + change).store(r0);
+            (r0[0], r0[4]) = (m, n);
+        }
+    }
+}
+
+/// 1 / m; zero for an empty node, whose velocity is then zero too.
+#[inline(always)]
+fn inverse(m: f64) -> f64 {
+    if m > 0.0 { 1.0 / m } else { 0.0 }
 }

@@ -5,97 +5,158 @@
 //! exponential instead of the midpoint rule).
 
 use crate::material::{Kinematics, Rotation};
-use crate::tensor::{Mat3, rotate, step_rotation, symmetric_part};
-use crate::world::state::Piece;
+use crate::simd::{Kernel, LANES, Vector, each};
+use crate::tensor::{Rows, SYMMETRIC, exp, rotated, step_rotations};
+use crate::world::state::{ChunkStage, Piece};
 
 /// Fills the chunk's scratch with what the material takes, and updates volume and deformation gradient.
 pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
-    let Piece { chunk, scratch, material, .. } = piece;
-    let layout = chunk.layout;
-    let stride = scratch.stride;
-    let rotates = material.model().kinematics == Kinematics::StrainIncrement;
-    for k in 0..chunk.len {
-        let l = Mat3::from_fn(|a, b| scratch.velocity_gradient[(3 * a + b) * stride + k]);
-        let increment = symmetric_part(&(l * dt));
-        for c in 0..6 {
-            scratch.strain_increment[c * stride + k] = increment[c];
-        }
-        let mut stress = chunk.get::<6>(layout.stress, k);
-        if rotates {
-            stress = rotate(&step_rotation(&l, dt), stress);
-        }
-        for c in 0..6 {
-            scratch.stress0[c * stride + k] = stress[c];
-        }
-        let [volume] = chunk.get::<1>(layout.volume, k);
-        let volume = volume * (increment[0] + increment[1] + increment[2]).exp();
-        chunk.set(layout.volume, k, [volume]);
-        let [mass] = chunk.get::<1>(layout.mass, k);
-        scratch.set_inputs(k, mass / volume, piece.space.spacing);
+    piece.isa.dispatch(Strain(piece, dt));
+    if piece.chunk.layout.state > piece.chunk.layout.deformation_gradient {
+        piece.isa.dispatch(DeformationGradient(piece, dt));
     }
-    update_deformation_gradient(piece, dt);
-    copy_state(piece, dt);
+    copy_state(piece);
+    let objective = |rotation| rotation == Rotation::Objective;
+    if piece.material.model().states.iter().any(|state| objective(state.rotation)) {
+        piece.isa.dispatch(RotatedState(piece, dt));
+    }
+    piece.lap(ChunkStage::Strained);
 }
 
-fn update_deformation_gradient<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
-    let Piece { chunk, scratch, .. } = piece;
-    let (layout, stride) = (chunk.layout, scratch.stride);
-    if layout.state == layout.deformation_gradient {
-        return;
+/// The velocity gradients of eight points.
+#[inline(always)]
+fn gradient<V: Vector>(velocity_gradient: &[f64], stride: usize, k: usize) -> Rows<V> {
+    each!(a in 3, b in 3 => V::load(&velocity_gradient[(3 * a + b) * stride + k..][..LANES]))
+}
+
+struct Strain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+
+impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(piece, dt) = self;
+        let Piece { chunk, scratch, material, .. } = piece;
+        let (layout, stride) = (chunk.layout, scratch.stride);
+        let rotates = material.model().kinematics == Kinematics::StrainIncrement;
+        for k in (0..chunk.len).step_by(LANES) {
+            let end = chunk.len.min(k + LANES);
+            let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+            let half = V::splat(0.5 * dt);
+            let increment = each!(c in 6 => {
+                let (a, b) = SYMMETRIC[c];
+                half * (l[a][b] + l[b][a])
+            });
+            let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
+            if rotates {
+                stress = rotated(&step_rotations(&l, dt), stress);
+            }
+            for c in 0..6 {
+                increment[c].store(&mut scratch.strain_increment[c * stride + k..][..LANES]);
+                stress[c].store(&mut scratch.stress0[c * stride + k..][..LANES]);
+            }
+            let mass = V::load(&chunk.column(layout.mass)[k..end]);
+            let volume = &mut chunk.column_mut(layout.volume)[k..end];
+            let new = V::load(volume) * exp(increment[0] + increment[1] + increment[2]);
+            new.store(volume);
+            if !scratch.density.is_empty() {
+                (mass / new).store(&mut scratch.density[k..][..LANES]);
+            }
+        }
+        scratch.element_length.fill(piece.space.spacing);
     }
-    for k in 0..chunk.len {
-        let l = Mat3::from_fn(|a, b| scratch.velocity_gradient[(3 * a + b) * stride + k]);
-        let f = chunk.get::<9>(layout.deformation_gradient, k);
-        let f = (Mat3::identity() + l * dt) * Mat3::from_row_slice(&f);
-        for a in 0..3 {
-            for b in 0..3 {
-                scratch.deformation_gradient[(3 * a + b) * stride + k] = f[(a, b)];
-                chunk.column_mut(layout.deformation_gradient + 3 * a + b)[k] = f[(a, b)];
+}
+
+struct DeformationGradient<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+
+impl<const D: usize> Kernel for DeformationGradient<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(Piece { chunk, scratch, .. }, dt) = self;
+        let (first, stride) = (chunk.layout.deformation_gradient, scratch.stride);
+        for k in (0..chunk.len).step_by(LANES) {
+            let end = chunk.len.min(k + LANES);
+            let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+            let f: Rows<V> =
+                each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]));
+            for a in 0..3 {
+                for b in 0..3 {
+                    let lf = l[a][0] * f[0][b] + l[a][1] * f[1][b] + l[a][2] * f[2][b];
+                    let new = lf.mul_add(V::splat(dt), f[a][b]);
+                    let c = 3 * a + b;
+                    new.store(&mut scratch.deformation_gradient[c * stride + k..][..LANES]);
+                    new.store(&mut chunk.column_mut(first + c)[k..end]);
+                }
             }
         }
     }
 }
 
-/// Copies the start state into the scratch; variables that rotate with the material are rotated as the stress is.
-fn copy_state<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
-    let Piece { chunk, scratch, material, .. } = piece;
+/// Copies the start state into the scratch.
+fn copy_state<const D: usize>(piece: &mut Piece<'_, '_, D>) {
+    let Piece { chunk, scratch, .. } = piece;
     let (layout, stride, n) = (chunk.layout, scratch.stride, chunk.len);
     for c in 0..layout.state_components() {
         scratch.state0[c * stride..][..n].copy_from_slice(chunk.column(layout.state + c));
     }
-    let mut first = 0;
-    for state in &material.model().states {
-        let components = state.kind.components();
-        if state.rotation == Rotation::Objective {
-            for k in 0..n {
-                let l = Mat3::from_fn(|a, b| scratch.velocity_gradient[(3 * a + b) * stride + k]);
-                let r = step_rotation(&l, dt);
-                let mut value = [0.0; 9];
-                for c in 0..components {
-                    value[c] = scratch.state0[(first + c) * stride + k];
-                }
-                let value = rotate_state(&r, value, components);
-                for c in 0..components {
-                    scratch.state0[(first + c) * stride + k] = value[c];
+}
+
+/// Rotates the state variables that turn with the material, as the stress is.
+struct RotatedState<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+
+impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(Piece { chunk, scratch, material, .. }, dt) = self;
+        let stride = scratch.stride;
+        let mut first = 0;
+        for state in &material.model().states {
+            let components = state.kind.components();
+            if state.rotation == Rotation::Objective {
+                for k in (0..chunk.len).step_by(LANES) {
+                    let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+                    let r = step_rotations(&l, dt);
+                    let at = |c: usize| (first + c) * stride + k;
+                    let mut value = [V::splat(0.0); 9];
+                    for c in 0..components {
+                        value[c] = V::load(&scratch.state0[at(c)..][..LANES]);
+                    }
+                    let value = rotated_state(&r, value, components);
+                    for c in 0..components {
+                        value[c].store(&mut scratch.state0[at(c)..][..LANES]);
+                    }
                 }
             }
+            first += components;
         }
-        first += components;
     }
 }
 
 /// A vector (3), symmetric (6) or general (9) tensor, rotated; a scalar as it is.
-fn rotate_state(r: &Mat3, value: [f64; 9], components: usize) -> [f64; 9] {
+#[inline(always)]
+fn rotated_state<V: Vector>(r: &Rows<V>, value: [V; 9], components: usize) -> [V; 9] {
     let mut out = value;
     match components {
         3 => {
-            let v = r * nalgebra::Vector3::new(value[0], value[1], value[2]);
-            out[..3].copy_from_slice(v.as_slice());
+            for a in 0..3 {
+                out[a] = r[a][0] * value[0] + r[a][1] * value[1] + r[a][2] * value[2];
+            }
         }
-        6 => out[..6].copy_from_slice(&rotate(r, std::array::from_fn(|c| value[c]))),
+        6 => {
+            let six = rotated(r, each!(c in 6 => value[c]));
+            out = each!(c in 9 => if c < 6 { six[c] } else { value[c] });
+        }
         9 => {
-            let m = r * Mat3::from_row_slice(&value) * r.transpose();
-            out = std::array::from_fn(|c| m[(c / 3, c % 3)]);
+            let m: Rows<V> = each!(a in 3, b in 3 => {
+                r[a][0] * value[b] + r[a][1] * value[3 + b] + r[a][2] * value[6 + b]
+            });
+            for a in 0..3 {
+                for b in 0..3 {
+                    out[3 * a + b] = m[a][0] * r[b][0] + m[a][1] * r[b][1] + m[a][2] * r[b][2];
+                }
+            }
         }
         _ => {}
     }

@@ -6,8 +6,9 @@ use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP};
 
 use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
-use crate::step::time_step::{Limits, larger};
-use crate::world::state::Piece;
+use crate::simd::{Kernel, LANES, Vector};
+use crate::step::time_step::Limits;
+use crate::world::state::{ChunkStage, Piece};
 
 /// What the stress updates of a step lead to.
 #[derive(Debug, Default)]
@@ -26,6 +27,10 @@ impl Outcome {
     pub fn limits(self) -> Result<Limits> {
         self.failure.map_or(Ok(self.limits), |error| Err(*error))
     }
+
+    fn failed(error: Error) -> Self {
+        Self { failure: Some(Box::new(error)), ..Self::default() }
+    }
 }
 
 /// Updates stress, state and energy of a chunk.
@@ -33,29 +38,29 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     let mut batch = StressBatch { dt, time: piece.time, ..piece.scratch.batch() };
     let result = piece.material.update(&mut batch);
     if let Err(error) = result.and_then(|()| check_points(piece)) {
-        return Outcome { failure: Some(Box::new(error)), ..Outcome::default() };
+        return Outcome::failed(error);
     }
     let wanted_dt = dt * wanted_factor(piece);
-    commit(piece);
-    let mut limits = Limits { wanted_dt, ..limits_of_chunk(piece) };
-    if !limits.speed.is_finite() {
-        return Outcome { failure: Some(Box::new(not_finite(piece))), ..Outcome::default() };
+    let (speed, finite) = piece.isa.dispatch(Commit(piece));
+    if !finite {
+        return Outcome::failed(not_finite(piece));
     }
-    limits.diffusivity =
-        piece.scratch.diffusivity.iter().take(piece.chunk.len).fold(0.0, |m, d| m.max(*d));
-    Outcome { limits, failure: None }
+    let diffusivities = piece.scratch.diffusivity.iter().take(piece.chunk.len);
+    let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
+    piece.lap(ChunkStage::Stressed);
+    Outcome { limits: Limits { speed, diffusivity, wanted_dt }, failure: None }
 }
 
 fn check_points<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<()> {
-    let failed =
-        piece.scratch.status.iter().take(piece.chunk.len).position(|s| *s >= LAHAR_POINT_FAILED);
-    match failed {
-        Some(k) => Err(fault(piece, k, Status::MaterialFailed, "could not update")),
-        None => Ok(()),
+    let status = &piece.scratch.status[..piece.chunk.len];
+    if status.iter().fold(0, |worst, s| worst.max(*s)) < LAHAR_POINT_FAILED {
+        return Ok(());
     }
+    let k = status.iter().position(|s| *s >= LAHAR_POINT_FAILED).unwrap_or(0);
+    Err(fault(piece, k, Status::MaterialFailed, "could not update"))
 }
 
-/// Smallest factor on the time step that a point of the chunk wants; 1 if none does, infinity if the model has no wishes.
+/// Smallest factor on the time step that a point of the chunk wants; infinity if none does.
 fn wanted_factor<const D: usize>(piece: &Piece<'_, '_, D>) -> f64 {
     let s = &piece.scratch;
     let n = piece.chunk.len;
@@ -63,80 +68,91 @@ fn wanted_factor<const D: usize>(piece: &Piece<'_, '_, D>) -> f64 {
     for f in s.dt_factor.iter().take(n).filter(|f| **f > 0.0 && **f < 1.0) {
         factor = factor.min(*f);
     }
-    if s.dt_factor.is_empty() && s.status.iter().take(n).any(|p| *p == LAHAR_POINT_SMALLER_STEP) {
+    let smaller = |s: &i32| *s == LAHAR_POINT_SMALLER_STEP;
+    if s.dt_factor.is_empty() && s.status[..n].iter().fold(false, |any, s| any | smaller(s)) {
         factor = 0.5;
     }
     factor
 }
 
-fn commit<const D: usize>(piece: &mut Piece<'_, '_, D>) {
-    let (s, chunk) = (&piece.scratch, &mut piece.chunk);
-    let (layout, stride, n) = (chunk.layout, s.stride, chunk.len);
-    for k in 0..n {
-        let [volume] = chunk.get::<1>(layout.volume, k);
-        let energy = if s.energy.is_empty() {
-            let mut work = 0.0;
+/// Writes energy, stress and state into the columns. Gives the largest c + |v|, and whether everything is finite and no wave speed
+/// negative.
+struct Commit<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>);
+
+impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
+    type Output = (f64, bool);
+    #[inline(always)]
+    fn run<V: Vector>(self) -> (f64, bool) {
+        let Self(Piece { chunk, scratch: s, .. }) = self;
+        let (layout, stride, n) = (chunk.layout, s.stride, chunk.len);
+        let zero = V::splat(0.0);
+        // zero times everything that must be finite
+        let (mut speed, mut nothing, mut negative) = (zero, zero, 0);
+        for k in (0..n).step_by(LANES) {
+            let end = n.min(k + LANES);
+            let (mut work, mut trace) = (zero, zero);
             for c in 0..6 {
-                let twice = if c < 3 { 0.5 } else { 1.0 };
-                let i = c * stride + k;
-                work += twice * (s.stress0[i] + s.stress1[i]) * s.strain_increment[i];
+                let at = c * stride + k..c * stride + end;
+                let stress = V::load(&s.stress1[at.clone()]);
+                stress.store(&mut chunk.column_mut(layout.stress + c)[k..end]);
+                let strain = V::load(&s.strain_increment[at.clone()]);
+                let twice = (V::load(&s.stress0[at]) + stress) * strain;
+                work = twice.mul_add(V::splat(if c < 3 { 0.5 } else { 1.0 }), work);
+                trace = if c < 3 { trace + strain } else { trace };
+                nothing = stress.mul_add(zero, nothing);
             }
-            let trace = s.strain_increment[k]
-                + s.strain_increment[stride + k]
-                + s.strain_increment[2 * stride + k];
-            chunk.column(layout.strain_energy)[k] + work * volume * (1.0 - 0.5 * trace)
-        } else {
-            s.energy[k] * volume
-        };
-        chunk.set(layout.strain_energy, k, [energy]);
+            let volume = V::load(&chunk.column(layout.volume)[k..end]);
+            let energy = if s.energy.is_empty() {
+                let change = work * volume * (V::splat(1.0) - V::splat(0.5) * trace);
+                V::load(&chunk.column(layout.strain_energy)[k..end]) + change
+            } else {
+                V::load(&s.energy[k..end]) * volume
+            };
+            energy.store(&mut chunk.column_mut(layout.strain_energy)[k..end]);
+            let mut square = zero;
+            for d in 0..D {
+                let v = V::load(&chunk.column(layout.velocity + d)[k..end]);
+                square = v.mul_add(v, square);
+                nothing =
+                    V::load(&chunk.column(layout.position + d)[k..end]).mul_add(zero, nothing);
+            }
+            let c = V::load(&s.wave_speed[k..end]);
+            negative |= c.less_than(zero);
+            let total = c + square.sqrt();
+            speed = speed.max(total);
+            nothing = (total + volume + energy).mul_add(zero, nothing);
+            for c in layout.strain_energy + 1..layout.state {
+                nothing = V::load(&chunk.column(c)[k..end]).mul_add(zero, nothing);
+            }
+            for c in 0..layout.state_components() {
+                let state = V::load(&s.state1[c * stride + k..c * stride + end]);
+                state.store(&mut chunk.column_mut(layout.state + c)[k..end]);
+                nothing = state.mul_add(zero, nothing);
+            }
+            for output in [&*s.diffusivity, &*s.dt_factor] {
+                if !output.is_empty() {
+                    nothing = V::load(&output[k..end]).mul_add(zero, nothing);
+                }
+            }
+        }
+        (speed.largest(), negative == 0 && nothing.sum().is_finite())
     }
-    for c in 0..6 {
-        chunk.column_mut(layout.stress + c).copy_from_slice(&s.stress1[c * stride..][..n]);
-    }
-    for c in 0..layout.state_components() {
-        chunk.column_mut(layout.state + c).copy_from_slice(&s.state1[c * stride..][..n]);
-    }
-}
-
-/// Largest c + |v|; not a number or infinite if anything of any particle is, or if a wave speed is negative.
-fn limits_of_chunk<const D: usize>(piece: &Piece<'_, '_, D>) -> Limits {
-    let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
-    let mut limits = Limits::default();
-    for k in 0..chunk.len {
-        limits.speed = larger(limits.speed, magnitude(piece, k));
-    }
-    for c in layout.strain_energy..layout.components() {
-        let worst = chunk.column(c).iter().fold(0.0, |m, v| larger(m, 0.0 * v));
-        limits.speed += worst;
-    }
-    limits
-}
-
-/// c + |v| of particle k, plus zero times everything that must be finite.
-fn magnitude<const D: usize>(piece: &Piece<'_, '_, D>, k: usize) -> f64 {
-    let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
-    let v = chunk.get::<D>(layout.velocity, k);
-    let x = chunk.get::<D>(layout.position, k);
-    let stress = chunk.get::<6>(layout.stress, k);
-    let [volume] = chunk.get::<1>(layout.volume, k);
-    let s = &piece.scratch;
-    let given = |output: &[f64]| output.get(k).map_or(0.0, |value| value.abs());
-    let rest = given(s.diffusivity) + given(s.dt_factor) + volume;
-    let zero = 0.0 * (stress.iter().sum::<f64>() + x.iter().sum::<f64>() + rest);
-    let c = if s.wave_speed[k] >= 0.0 { s.wave_speed[k] } else { f64::NAN };
-    c + v.iter().map(|c| c * c).sum::<f64>().sqrt() + zero
 }
 
 fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>) -> Error {
-    let layout = piece.chunk.layout;
-    let bad = |k: &usize| {
-        let state = |c| !piece.chunk.column(c)[*k].is_finite();
-        !magnitude(piece, *k).is_finite() || (layout.strain_energy..layout.components()).any(state)
+    let (chunk, s) = (&piece.chunk, &piece.scratch);
+    let given = |output: &[f64], k: usize| output.get(k).is_none_or(|value| value.is_finite());
+    let good = |k: &usize| {
+        (0..chunk.layout.components()).all(|c| chunk.column(c)[*k].is_finite())
+            && s.wave_speed[*k] >= 0.0
+            && s.wave_speed[*k].is_finite()
+            && given(s.diffusivity, *k)
+            && given(s.dt_factor, *k)
     };
-    let k = (0..piece.chunk.len).find(bad).unwrap_or(0);
+    let k = (0..chunk.len).find(|k| !good(k));
     fault(
         piece,
-        k,
+        k.unwrap_or(0),
         Status::NonFinite,
         "gave or took a value that is not finite, or gave a negative wave speed,",
     )

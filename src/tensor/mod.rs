@@ -1,12 +1,17 @@
 //! Small tensors: the order of symmetric components and the objective rotation.
 //!
 //! Symmetric tensors are stored as xx, yy, zz, xy, yz, zx (tensor components, not engineering shears), gradients row-major.
-//! Two-dimensional worlds use the same shapes with zeros out of the plane.
+//! Two-dimensional worlds use the same shapes with zeros out of the plane. The formulas are written for one tensor or for eight.
 
 use nalgebra::Matrix3;
 
+use crate::simd::{Real, Vector, each};
+
 /// A 3x3 matrix.
 pub type Mat3 = Matrix3<f64>;
+
+/// Rows of a 3x3 matrix, or of eight.
+pub type Rows<R> = [[R; 3]; 3];
 
 /// Row and column of the six stored components of a symmetric tensor.
 pub const SYMMETRIC: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
@@ -26,32 +31,106 @@ pub fn symmetric_part(m: &Mat3) -> [f64; 6] {
     SYMMETRIC.map(|(a, b)| 0.5 * (m[(a, b)] + m[(b, a)]))
 }
 
+/// Angles of a step are small: up to √(1e-3) rad, the coefficients of the rotation come from their series, whose next term is below the round-off.
+const SMALL: f64 = 1e-3;
+
 /// Rotation of a step: R = exp(W dt) with the spin W = skw L, by Rodrigues' formula
 /// R = I + a W dt + b (W dt)², a = sin(θ)/θ, b = (1 − cos θ)/θ².
 ///
-/// `l` is the velocity gradient [1/s], `dt` the step [s]. Angles of a step are small: up to 0.03 rad both coefficients are
-/// taken from their series, whose next term is below the round-off.
-#[inline]
+/// `l` is the velocity gradient [1/s], `dt` the step [s].
 pub fn step_rotation(l: &Mat3, dt: f64) -> Mat3 {
-    let w = (l - l.transpose()) * (0.5 * dt);
-    let t = w[(0, 1)] * w[(0, 1)] + w[(1, 2)] * w[(1, 2)] + w[(0, 2)] * w[(0, 2)];
-    let (a, b) = if t < 1e-3 {
-        (
-            1.0 - t / 6.0 * (1.0 - t / 20.0 * (1.0 - t / 42.0)),
-            0.5 - t / 24.0 * (1.0 - t / 30.0 * (1.0 - t / 56.0)),
-        )
-    } else {
-        let (theta, half) = (t.sqrt(), 0.5 * t.sqrt());
-        (theta.sin() / theta, 0.5 * (half.sin() / half).powi(2))
-    };
-    Mat3::identity() + w * a + w * w * b
+    let w = spin(&std::array::from_fn(|a| std::array::from_fn(|b| l[(a, b)])), dt);
+    let t = square(&w);
+    let r = rodrigues(&w, if t < SMALL { series(t) } else { closed_form(t) });
+    Mat3::from_fn(|a, b| r[a][b])
+}
+
+/// The same for eight velocity gradients.
+#[inline(always)]
+pub fn step_rotations<V: Vector>(l: &Rows<V>, dt: f64) -> Rows<V> {
+    let w = spin(l, V::splat(dt));
+    let t = square(&w);
+    if t.less_than(V::splat(SMALL)) == u8::MAX {
+        return rodrigues(&w, series(t));
+    }
+    let factors = t.to_array().map(|t| if t < SMALL { series(t) } else { closed_form(t) });
+    let (a, b) = (factors.map(|f| f.0), factors.map(|f| f.1));
+    rodrigues(&w, (V::from_array(a), V::from_array(b)))
+}
+
+/// Components (0, 1), (1, 2) and (0, 2) of W dt.
+#[inline(always)]
+fn spin<R: Real>(l: &Rows<R>, dt: R) -> [R; 3] {
+    let half = R::splat(0.5) * dt;
+    [(l[0][1] - l[1][0]) * half, (l[1][2] - l[2][1]) * half, (l[0][2] - l[2][0]) * half]
+}
+
+/// θ², the square of the angle.
+#[inline(always)]
+fn square<R: Real>(w: &[R; 3]) -> R {
+    w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
+}
+
+#[inline(always)]
+fn series<R: Real>(t: R) -> (R, R) {
+    let one = R::splat(1.0);
+    let c = each!(n in 6 => t * R::splat(1.0 / [6.0, 20.0, 42.0, 24.0, 30.0, 56.0][n]));
+    let a = one - c[0] * (one - c[1] * (one - c[2]));
+    let b = R::splat(0.5) - c[3] * (one - c[4] * (one - c[5]));
+    (a, b)
+}
+
+#[cold]
+fn closed_form(t: f64) -> (f64, f64) {
+    let (theta, half) = (t.sqrt(), 0.5 * t.sqrt());
+    (theta.sin() / theta, 0.5 * (half.sin() / half).powi(2))
+}
+
+#[inline(always)]
+fn rodrigues<R: Real>(w: &[R; 3], (a, b): (R, R)) -> Rows<R> {
+    let one = R::splat(1.0);
+    let [x, y, z] = *w; // (0, 1), (1, 2), (0, 2)
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let (xy, yz, xz) = (b * x * y, b * y * z, b * x * z);
+    let (ax, ay, az) = (a * x, a * y, a * z);
+    [
+        [one - b * (xx + zz), ax - yz, az + xy],
+        [-ax - yz, one - b * (xx + yy), ay - xz],
+        [xy - az, -ay - xz, one - b * (yy + zz)],
+    ]
 }
 
 /// R s Rᵀ of a symmetric tensor given by its six components.
 #[inline]
 pub fn rotate(r: &Mat3, s: [f64; 6]) -> [f64; 6] {
-    let m = r * symmetric(s) * r.transpose();
-    SYMMETRIC.map(|(a, b)| m[(a, b)])
+    rotated(&std::array::from_fn(|a| std::array::from_fn(|b| r[(a, b)])), s)
+}
+
+/// The same for one tensor or eight.
+#[inline(always)]
+pub fn rotated<R: Real>(r: &Rows<R>, s: [R; 6]) -> [R; 6] {
+    let s = each!(a in 3, b in 3 => s[SYMMETRIC_INDEX[a][b]]);
+    let m = each!(a in 3, b in 3 => product(r[a], s[b]));
+    each!(c in 6 => product(m[SYMMETRIC[c].0], r[SYMMETRIC[c].1]))
+}
+
+#[inline(always)]
+fn product<R: Real>(x: [R; 3], y: [R; 3]) -> R {
+    x[2].mul_add(y[2], x[1].mul_add(y[1], x[0] * y[0]))
+}
+
+/// e^x; within round-off, and fast where |x| ≤ ¼ in all lanes.
+#[inline(always)]
+pub fn exp<V: Vector>(x: V) -> V {
+    if x.abs().less_than(V::splat(0.25)) != u8::MAX {
+        return V::from_array(x.to_array().map(f64::exp));
+    }
+    // Taylor's series up to x^12 / 12!
+    let mut sum = V::splat(1.0);
+    for n in 0..12 {
+        sum = (x * V::splat(1.0 / f64::from(12 - n))).mul_add(sum, V::splat(1.0));
+    }
+    sum
 }
 
 #[cfg(test)]

@@ -4,18 +4,19 @@
 //! splines D = h²/4; for linear shapes D is singular at nodes and C = Σ v ⊗ ∇w is taken instead.
 
 use super::Received;
+use crate::simd::{Real, each};
 
 /// Affine matrix of a particle. `moment` is D in units of h², `spacing` is h [m].
 #[inline(always)]
-pub fn affine<const D: usize>(
-    received: &Received<D>,
+pub fn affine<R: Real, const D: usize>(
+    received: &Received<R, D>,
     moment: Option<f64>,
     spacing: f64,
-) -> [[f64; D]; D] {
+) -> [[R; D]; D] {
     match moment {
         Some(moment) => {
-            let inverse = 1.0 / (moment * spacing * spacing);
-            received.moment.map(|row| row.map(|b| b * inverse))
+            let inverse = R::splat(1.0 / (moment * spacing * spacing));
+            each!(a in D, b in D => received.moment[a][b] * inverse)
         }
         None => received.gradient,
     }

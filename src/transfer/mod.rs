@@ -30,26 +30,22 @@ impl TransferKind {
     }
 }
 
-/// What the gather brings to a particle.
-#[derive(Clone, Copy, Debug)]
-pub struct Received<const D: usize> {
-    /// Σ w v.
-    pub velocity: [f64; D],
-    /// Σ w Δv.
-    pub increment: [f64; D],
-    /// Σ w v ⊗ (x_i − x_p); zero unless asked for.
-    pub moment: [[f64; D]; D],
-    /// Σ v ⊗ ∇w [1/s].
-    pub gradient: [[f64; D]; D],
+impl TransferKind {
+    /// Whether particles carry an affine matrix.
+    pub fn is_affine(self) -> bool {
+        self == Self::Apic
+    }
 }
 
-impl<const D: usize> Default for Received<D> {
-    fn default() -> Self {
-        Self {
-            velocity: [0.0; D],
-            increment: [0.0; D],
-            moment: [[0.0; D]; D],
-            gradient: [[0.0; D]; D],
-        }
-    }
+/// What the gather brings to a particle, or to eight.
+#[derive(Clone, Copy, Debug)]
+pub struct Received<R, const D: usize> {
+    /// Σ w v.
+    pub velocity: [R; D],
+    /// Σ w Δv; not meaningful if the transfer is affine.
+    pub increment: [R; D],
+    /// Σ w v ⊗ (x_i − x_p); only meaningful if the transfer is affine.
+    pub moment: [[R; D]; D],
+    /// Σ v ⊗ ∇w [1/s].
+    pub gradient: [[R; D]; D],
 }

@@ -5,6 +5,7 @@
 //! J. U. Brackbill, H. M. Ruppel, J. Comput. Phys. 65 (1986) 314–343, doi:10.1016/0021-9991(86)90211-1.
 
 use super::Received;
+use crate::simd::{Real, each};
 
 /// Share of PIC in a step of `dt` [s] at the rate `pic_rate` [1/s].
 pub fn pic_share(pic_rate: f64, dt: f64) -> f64 {
@@ -13,10 +14,13 @@ pub fn pic_share(pic_rate: f64, dt: f64) -> f64 {
 
 /// New velocity of a particle that had `v`.
 #[inline(always)]
-pub fn velocity<const D: usize>(v: [f64; D], received: &Received<D>, pic_share: f64) -> [f64; D] {
-    std::array::from_fn(|a| {
-        (1.0 - pic_share) * (v[a] + received.increment[a]) + pic_share * received.velocity[a]
-    })
+pub fn velocity<R: Real, const D: usize>(
+    v: [R; D],
+    received: &Received<R, D>,
+    pic_share: f64,
+) -> [R; D] {
+    let (pic, flip) = (R::splat(pic_share), R::splat(1.0 - pic_share));
+    each!(a in D => flip * (v[a] + received.increment[a]) + pic * received.velocity[a])
 }
 
 #[cfg(test)]

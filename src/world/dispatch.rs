@@ -6,7 +6,7 @@ use crate::shape::linear::Linear;
 use crate::shape::quadratic_bspline::QuadraticBspline;
 use crate::shape::stencil::ShapeFunction;
 use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_run};
-use crate::step::particles_to_grid::{Scatter, scatter_run, scatter_velocity_run};
+use crate::step::particles_to_grid::{Scatter, scatter_run};
 
 /// Calls the visitor with number and weight of every node of the stencil at ξ; false if a node's block is not active.
 pub type NodesAt<const D: usize> = fn(&Grid<D>, [f64; D], &mut dyn FnMut(usize, f64)) -> bool;
@@ -16,8 +16,6 @@ pub type NodesAt<const D: usize> = fn(&Grid<D>, [f64; D], &mut dyn FnMut(usize, 
 pub struct Kernels<const D: usize> {
     /// m, mv and f to a tile.
     pub scatter: Scatter<D>,
-    /// The new mv to a tile.
-    pub scatter_velocity: Scatter<D>,
     /// The grid to particles.
     pub gather: GatherKernel<D>,
     /// The nodes around a point.
@@ -38,11 +36,10 @@ impl<const D: usize> Kernels<D> {
     fn of<S: ShapeFunction<N>, const N: usize>() -> Self {
         Self {
             scatter: scatter_run::<S, N, D>,
-            scatter_velocity: scatter_velocity_run::<S, N, D>,
             gather: gather_run::<S, N, D>,
             nodes_at: for_stencil_nodes::<S, N, D>,
             moment: |xi| {
-                let axis = S::axis(xi);
+                let axis = S::axis::<f64>(xi);
                 (0..N).map(|n| axis.w[n] * (n as f64 - axis.fraction).powi(2)).sum()
             },
         }

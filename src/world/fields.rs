@@ -100,6 +100,7 @@ impl World {
         self.host_wrote = true;
         on!(&mut self, s => {
             s.limits = None;
+            s.rescan = true;
             let (info, first) = find(s, body, field)?;
             let at = s.body_position(body)?;
             let particles = &mut s.bodies[at].particles;

@@ -34,7 +34,7 @@ pub trait Nodes {
 
 impl<const D: usize> Nodes for Grid<D> {
     fn count(&self) -> usize {
-        self.velocity.len()
+        self.node_count()
     }
 
     fn position(&self, node: usize) -> [f64; 3] {
@@ -47,15 +47,16 @@ impl<const D: usize> Nodes for Grid<D> {
     }
 
     fn mass(&self, node: usize) -> f64 {
-        self.velocity[node][0]
+        self.velocity[self.record(node)][0]
     }
 
     fn velocity(&self, node: usize) -> [f64; 3] {
-        let [_, v @ ..] = self.velocity[node];
+        let [_, v @ ..] = self.velocity[self.record(node)];
         v
     }
 
     fn set_velocity(&mut self, node: usize, velocity: [f64; 3]) {
+        let node = self.record(node);
         let before = self.velocity[node];
         self.velocity[node][1..=D].copy_from_slice(&velocity[..D]);
         for a in 0..D {

@@ -33,7 +33,7 @@ use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
 use options::{Options, check_damping, check_gravity};
 use queries::Totals;
-use state::{State, WallEntry};
+use state::{State, Stopwatch, WallEntry};
 
 /// A host's step may exceed the stable one by this much: its own arithmetic.
 const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
@@ -378,6 +378,11 @@ impl World {
         on!(&mut self, s => s.set_hook(point, hook));
     }
 
+    /// Sets who is told about the stages of every chunk, on the thread that works on it; a call per chunk and stage.
+    pub fn set_stopwatch(&mut self, stopwatch: Option<Arc<Stopwatch>>) {
+        on!(&mut self, s => s.stopwatch = stopwatch);
+    }
+
     /// Numbers of blocks and nodes, and their memory.
     pub fn grid_stats(&self) -> GridStats {
         on!(&self, s => s.grid_stats())
@@ -385,9 +390,9 @@ impl World {
 
     /// Integer coordinates of the active blocks; z is 0 in two dimensions.
     pub fn grid_blocks(&self) -> Vec<[i64; 3]> {
-        on!(&self, s => s.grid.keys().iter().map(|key| {
+        on!(&self, s => s.grid.order().iter().map(|slot| {
             let mut out = [0; 3];
-            key.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
+            s.grid.keys()[*slot as usize].iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
             out
         }).collect())
     }

@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::grid::GridStats;
-use crate::grid::key::block_nodes;
 use crate::particles::fields::NODE_FIELDS;
 use crate::step::locate::FARTHEST;
 use crate::transfer::TransferKind;
@@ -112,7 +111,7 @@ impl<const D: usize> State<D> {
 
     /// Value of a node field at an active node.
     pub fn node_value(&self, field: &str, node: i64, out: &mut [f64]) -> Result<()> {
-        let count = self.grid.keys().len() * block_nodes(D);
+        let count = self.grid.node_count();
         let node = usize::try_from(node).ok().filter(|n| *n < count).ok_or_else(|| {
             Error::invalid(format!("node numbers go from 0 to {}, got {node}", count as i64 - 1))
         })?;
@@ -123,6 +122,7 @@ impl<const D: usize> State<D> {
                 "{field} has {components} components, room is for {n}"
             )));
         }
+        let node = self.grid.record(node);
         let (r0, force) = (self.grid.velocity[node], self.grid.force[node]);
         match field {
             "mass" => out[0] = r0[0],
@@ -160,7 +160,7 @@ impl<const D: usize> State<D> {
             if let Err(error) = self.node_value(field, node as i64, value) {
                 failed = Some(error);
             }
-            let wm = w * self.grid.velocity[node][0];
+            let wm = w * self.grid.velocity[self.grid.record(node)][0];
             mass += wm;
             for (sum, value) in sum.iter_mut().zip(&*value) {
                 *sum += wm * value;

@@ -88,67 +88,79 @@ impl Scratch<'_> {
     }
 }
 
+/// Room for the scratch of a chunk and a tile, one per thread. It grows once and is kept.
 #[derive(Default)]
-struct Buffers {
+pub struct Buffers {
+    points: Points,
+    tile: Vec<TileNode>,
+}
+
+/// Room for the scratch of a chunk.
+#[derive(Default)]
+pub struct Points {
     doubles: Aligned,
     status: Vec<i32>,
-    tile: Vec<TileNode>,
 }
 
 thread_local! {
     static BUFFERS: RefCell<Buffers> = RefCell::default();
 }
 
-/// Calls `work` with this thread's scratch for `n` points of a material. The buffers grow once and are kept.
+/// Calls `work` with this thread's scratch for `n` points of a material.
 pub fn with_scratch<R>(
     material: &Material,
     n: usize,
     work: impl FnOnce(&mut Scratch<'_>) -> R,
 ) -> R {
-    with_scratch_and_tile(material, n, 0, |mut scratch, _| work(&mut scratch))
+    with_buffers(0, |points, _| work(&mut points.scratch(material, n)))
 }
 
-/// As [`with_scratch`], with a tile of `tile_nodes` nodes.
-pub fn with_scratch_and_tile<R>(
-    material: &Material,
-    n: usize,
+/// Calls `work` with this thread's room for points and for a tile of `tile_nodes` nodes.
+pub fn with_buffers<R>(
     tile_nodes: usize,
-    work: impl FnOnce(Scratch<'_>, &mut [TileNode]) -> R,
+    work: impl FnOnce(&mut Points, &mut [TileNode]) -> R,
 ) -> R {
-    let model = material.model();
-    let stride = padded(n);
-    let state = model.state_components();
-    let wants = |input| usize::from(model.inputs.contains(&input));
-    let gives = |output| usize::from(model.outputs & output != 0);
-    let gradient = if model.kinematics == Kinematics::DeformationGradient { 9 } else { 0 };
-    let sizes = [
-        9,
-        6,
-        gradient,
-        6,
-        6,
-        state,
-        state,
-        wants(Input::Density),
-        wants(Input::ElementLength),
-        1,
-        gives(LAHAR_OUTPUT_DIFFUSIVITY),
-        gives(LAHAR_OUTPUT_ENERGY),
-        gives(LAHAR_OUTPUT_DT_FACTOR),
-    ];
-    BUFFERS.with_borrow_mut(|buffers| {
+    BUFFERS.with_borrow_mut(|Buffers { points, tile }| {
+        if tile.len() < tile_nodes {
+            tile.resize(tile_nodes, TileNode::default());
+        }
+        work(points, &mut tile[..tile_nodes])
+    })
+}
+
+impl Points {
+    /// The scratch for `n` points of a material.
+    pub fn scratch(&mut self, material: &Material, n: usize) -> Scratch<'_> {
+        let model = material.model();
+        let stride = padded(n);
+        let state = model.state_components();
+        let wants = |input| usize::from(model.inputs.contains(&input));
+        let gives = |output| usize::from(model.outputs & output != 0);
+        let gradient = if model.kinematics == Kinematics::DeformationGradient { 9 } else { 0 };
+        let sizes = [
+            9,
+            6,
+            gradient,
+            6,
+            6,
+            state,
+            state,
+            wants(Input::Density),
+            wants(Input::ElementLength),
+            1,
+            gives(LAHAR_OUTPUT_DIFFUSIVITY),
+            gives(LAHAR_OUTPUT_ENERGY),
+            gives(LAHAR_OUTPUT_DT_FACTOR),
+        ];
         let needed = sizes.iter().sum::<usize>() * stride;
-        if buffers.doubles.as_slice().len() < needed {
+        if self.doubles.as_slice().len() < needed {
             let room = Aligned::zeroed(needed.max(64 * CHUNK));
-            buffers.doubles = room.expect("scratch of a chunk is small");
+            self.doubles = room.expect("scratch of a chunk is small");
         }
-        if buffers.status.len() < stride {
-            buffers.status.resize(stride.max(CHUNK), 0);
+        if self.status.len() < stride {
+            self.status.resize(stride.max(CHUNK + 8), 0);
         }
-        if buffers.tile.len() < tile_nodes {
-            buffers.tile.resize(tile_nodes, [[0.0; 4]; 2]);
-        }
-        let mut rest = buffers.doubles.as_mut_slice();
+        let mut rest = self.doubles.as_mut_slice();
         let mut parts = sizes.map(|components| {
             let (part, tail) = std::mem::take(&mut rest).split_at_mut(components * stride);
             rest = tail;
@@ -156,9 +168,9 @@ pub fn with_scratch_and_tile<R>(
         });
         let mut next = parts.iter_mut().map(std::mem::take);
         let mut take = || next.next().unwrap_or_default();
-        let status = &mut buffers.status[..stride];
+        let status = &mut self.status[..stride];
         status.fill(0);
-        let scratch = Scratch {
+        Scratch {
             n,
             stride,
             velocity_gradient: take(),
@@ -176,7 +188,6 @@ pub fn with_scratch_and_tile<R>(
             dt_factor: take(),
             status,
             kinematics: model.kinematics,
-        };
-        work(scratch, &mut buffers.tile[..tile_nodes])
-    })
+        }
+    }
 }

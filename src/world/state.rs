@@ -8,7 +8,8 @@ use crate::error::{Place, Result};
 use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
-use crate::particles::{ChunkMut, Particles, for_each_chunk, reserve};
+use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
+use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
 use crate::step::time_step::Limits;
@@ -18,7 +19,7 @@ use crate::transfer::TransferKind;
 use super::dispatch::Kernels;
 use super::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
 use super::options::Options;
-use super::scratch::{Scratch, with_scratch_and_tile};
+use super::scratch::{Scratch, with_buffers};
 
 /// Below this number of particles a step is serial: threads would cost more than they bring.
 const SERIAL_BELOW: usize = 4096;
@@ -30,6 +31,8 @@ pub struct Space<const D: usize> {
     pub origin: [f64; D],
     /// Distance of nodes [m].
     pub spacing: f64,
+    /// One over the distance [1/m].
+    pub inverse: f64,
     /// The lowest node of a stencil is floor(ξ − first_offset).
     pub first_offset: f64,
     /// Distance, in cells, at which nodes feel a wall.
@@ -39,8 +42,9 @@ pub struct Space<const D: usize> {
 impl<const D: usize> Space<D> {
     /// Position in units of the spacing, from node 0.
     #[inline(always)]
-    pub fn to_units(&self, x: [f64; D]) -> [f64; D] {
-        std::array::from_fn(|d| (x[d] - self.origin[d]) / self.spacing)
+    pub fn to_units<R: Real>(&self, x: [R; D]) -> [R; D] {
+        let inverse = R::splat(self.inverse);
+        each!(d in D => (x[d] - R::splat(self.origin[d])) * inverse)
     }
 }
 
@@ -89,6 +93,8 @@ pub struct State<const D: usize> {
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
     pub regroup: bool,
+    /// Positions may have changed outside a step since the last sort, without marks of moved particles.
+    pub rescan: bool,
     /// Whether steps use the threads of the context.
     pub parallel: bool,
     /// Limits of the next time step; None if the host changed something since they were found.
@@ -97,6 +103,8 @@ pub struct State<const D: usize> {
     pub time: f64,
     /// Number of steps.
     pub step_count: i64,
+    /// Times the stages of chunks; for benches.
+    pub stopwatch: Option<Arc<Stopwatch>>,
     hooks: [Option<Hook>; HOOK_POINTS],
 }
 
@@ -115,15 +123,17 @@ impl<const D: usize> State<D> {
             impulses: Vec::new(),
             sorting: Sorting::default(),
             regroup: true,
+            rescan: true,
             parallel: false,
             limits: None,
             time: 0.0,
             step_count: 0,
+            stopwatch: None,
             hooks: [const { None }; HOOK_POINTS],
         };
         if world.options.grid_policy == GridPolicy::Static {
             let blocks = world.blocks_of_box()?;
-            world.grid.set_blocks(&blocks, false)?;
+            world.grid.set_owners(&blocks, false)?;
         }
         Ok(world)
     }
@@ -133,6 +143,7 @@ impl<const D: usize> State<D> {
         Space {
             origin: self.grid.origin,
             spacing: self.options.spacing,
+            inverse: 1.0 / self.options.spacing,
             first_offset: self.options.shape.first_offset(),
             wall_reach: self.options.shape.wall_reach(),
         }
@@ -186,7 +197,7 @@ impl<const D: usize> State<D> {
 
     /// To be called when particles came or went.
     pub fn particles_changed(&mut self) {
-        self.regroup = true;
+        (self.regroup, self.rescan) = (true, true);
         self.limits = None;
         self.parallel = self.context.threads() > 1 && self.particle_count() >= SERIAL_BELOW;
     }
@@ -210,59 +221,89 @@ impl<const D: usize> State<D> {
     ) -> Outcome {
         let (space, edge) = (self.space(), self.tiles.edge);
         let tile_nodes = self.tiles.tile_nodes(D);
-        let Self { bodies, grid, options, kernels, context, time, parallel, .. } = self;
+        let Self { bodies, grid, options, kernels, context, time, parallel, stopwatch, .. } = self;
         let mut outcome = Outcome::default();
         for body in bodies {
             let Body { id, material, particles, runs } = body;
-            let (ids, chunk) = particles.ids_and_chunk();
-            let on_chunk = |chunk: ChunkMut<'_>| {
+            let (ids, all) = particles.ids_and_chunk();
+            let on_task = |task: ChunkMut<'_>| {
                 if *parallel {
                     context.mark_worker();
                 }
-                with_scratch_and_tile(material, chunk.len, tile_nodes, |scratch, tile| {
-                    work(&mut Piece {
-                        chunk,
-                        scratch,
-                        tile,
-                        body: *id,
-                        ids,
-                        material,
-                        runs,
-                        grid,
-                        space,
-                        edge,
-                        gather: kernels.gather,
-                        transfer: options.transfer,
-                        pic_rate: options.pic_rate,
-                        time: *time,
-                    })
+                with_buffers(tile_nodes, |points, tile| {
+                    let (mut of_task, mut loaded) = (Outcome::default(), None);
+                    task.for_each_chunk(|chunk| {
+                        let piece = &mut Piece {
+                            scratch: points.scratch(material, chunk.len),
+                            chunk,
+                            tile,
+                            loaded: &mut loaded,
+                            body: *id,
+                            ids,
+                            material,
+                            runs,
+                            grid,
+                            isa: context.isa(),
+                            space,
+                            edge,
+                            gather: kernels.gather,
+                            transfer: options.transfer,
+                            pic_rate: options.pic_rate,
+                            time: *time,
+                            stopwatch: stopwatch.as_deref(),
+                        };
+                        piece.lap(ChunkStage::Start);
+                        let of_chunk = work(piece);
+                        of_task = std::mem::take(&mut of_task).merge(of_chunk);
+                    });
+                    of_task
                 })
             };
-            let of_body = for_each_chunk(chunk, *parallel, &on_chunk, &Outcome::merge);
+            let of_body = for_each_task(all, *parallel, &on_task, &Outcome::merge);
             outcome = outcome.merge(of_body);
         }
         outcome
     }
 }
 
+/// Where in the last stages of a step a chunk has arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChunkStage {
+    /// Nothing is done.
+    Start,
+    /// Grid to particles is done.
+    Gathered,
+    /// The strain is updated.
+    Strained,
+    /// The stress is updated.
+    Stressed,
+}
+
+/// Who is told about each chunk and stage, on the thread that works on it.
+pub type Stopwatch = dyn Fn(ChunkStage) + Send + Sync;
+
 /// A chunk of particles on its way through the last stages of a step.
 pub struct Piece<'c, 's, const D: usize> {
     /// The particles.
-    pub chunk: ChunkMut<'c>,
+    pub chunk: &'s mut ChunkMut<'c>,
     /// What the stages hand to each other.
     pub scratch: Scratch<'s>,
     /// Room for a copy of the grid around a block.
     pub tile: &'s mut [TileNode],
+    /// The block whose nodes stand in the tile.
+    pub loaded: &'s mut Option<u32>,
     /// Id of the body.
     pub body: i64,
     /// Ids of all particles of the body, in storage order.
-    pub ids: &'c [i64],
+    pub ids: &'s [i64],
     /// The material.
-    pub material: &'c Material,
+    pub material: &'s Material,
     /// The runs of the body.
-    pub runs: &'c [Run],
+    pub runs: &'s [Run],
     /// The grid.
-    pub grid: &'c Grid<D>,
+    pub grid: &'s Grid<D>,
+    /// The instruction set.
+    pub isa: Isa,
     /// Origin and spacing.
     pub space: Space<D>,
     /// Nodes along the edge of a tile.
@@ -275,4 +316,15 @@ pub struct Piece<'c, 's, const D: usize> {
     pub pic_rate: f64,
     /// Time at the start of the step [s].
     pub time: f64,
+    stopwatch: Option<&'s Stopwatch>,
+}
+
+impl<const D: usize> Piece<'_, '_, D> {
+    /// Tells the stopwatch, if there is one, that a stage is done.
+    #[inline]
+    pub fn lap(&self, stage: ChunkStage) {
+        if let Some(stopwatch) = self.stopwatch {
+            stopwatch(stage);
+        }
+    }
 }

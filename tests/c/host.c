@@ -38,6 +38,9 @@ static picture fall(const char *plugin, int is_trapping) {
   picture result;
   OK(lahar_context_create(2, &logged));
   OK(lahar_context_load_plugin(logged, plugin, NULL));
+  CHECK(lahar_context_simd(NULL) == NULL);
+  CHECK(strcmp(lahar_context_simd(logged), "scalar") == 0 || strcmp(lahar_context_simd(logged), "avx2") == 0 ||
+        strcmp(lahar_context_simd(logged), "avx512") == 0);
   if (is_trapping) OK(lahar_context_set_log(logged, on_log, &lines, LAHAR_LOG_WARNING));
   OK(lahar_material_create(logged, "linear_elastic", 2, names, values, &material));
   OK(lahar_world_options_init(&options, sizeof options));

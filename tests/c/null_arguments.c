@@ -27,6 +27,7 @@ static void context_functions(void) {
   NULL_IGNORED(lahar_context_free, context, (NULL));
   NULL_REFUSED(lahar_context_thread_count, context, (NULL, &small));
   NULL_REFUSED(lahar_context_thread_count, threads, (context, NULL));
+  NULL_IGNORED(lahar_context_simd, context, (NULL));
   NULL_REFUSED(lahar_context_threads_used, context, (NULL, &small));
   NULL_REFUSED(lahar_context_threads_used, threads, (context, NULL));
   NULL_REFUSED(lahar_context_set_log, context, (NULL, lahar_log_stderr, NULL, 1));

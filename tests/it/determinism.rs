@@ -1,14 +1,20 @@
 //! The state after 200 steps is the same, bit for bit, for any number of threads.
 
 use lahar::boundary::{Wall, WallKind};
+use lahar::simd::Isa;
 use lahar::transfer::TransferKind;
 use lahar::world::options::Options;
 
-use crate::setup::{a_box, context, elastic, fill, read, world};
+use crate::setup::{a_box, context_with, elastic, fill, read, world};
 
 /// All fields of two colliding bodies (more than 20 000 particles) after 200 steps, and the number of threads that worked.
-fn state_after_a_collision(threads: usize, transfer: TransferKind) -> (Vec<u64>, usize) {
-    let context = context(threads);
+fn state_after_a_collision(
+    threads: usize,
+    isa: Isa,
+    transfer: TransferKind,
+    steps: usize,
+) -> (Vec<u64>, usize) {
+    let context = context_with(threads, isa);
     let soft = elastic(&context, 1e5, 0.3);
     let stiff = elastic(&context, 4e5, 0.2);
     let options = Options {
@@ -28,7 +34,7 @@ fn state_after_a_collision(threads: usize, transfer: TransferKind) -> (Vec<u64>,
         .add_wall(&Wall { axis: 2, side: 1, position: 0.05, kind, friction: 0.4 })
         .expect("a good wall");
     assert!(world.totals(None).expect("totals").particles >= 20_000);
-    for _ in 0..200 {
+    for _ in 0..steps {
         world.step(None).expect("a good step");
     }
     let mut bits = Vec::new();
@@ -47,11 +53,20 @@ fn state_after_a_collision(threads: usize, transfer: TransferKind) -> (Vec<u64>,
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for transfer in [TransferKind::PicFlip, TransferKind::Apic] {
-        let (one, _) = state_after_a_collision(1, transfer);
+        let (one, _) = state_after_a_collision(1, Isa::best(), transfer, 200);
         for threads in [2, 3, 8] {
-            let (bits, used) = state_after_a_collision(threads, transfer);
+            let (bits, used) = state_after_a_collision(threads, Isa::best(), transfer, 200);
             assert!(used >= 2, "of {threads} threads only {used} worked");
             assert!(bits == one, "{threads} threads give other bits than one");
         }
+    }
+}
+
+#[test]
+fn so_it_is_for_every_instruction_set() {
+    for isa in Isa::all() {
+        let (one, _) = state_after_a_collision(1, isa, TransferKind::Apic, 50);
+        let (two, _) = state_after_a_collision(2, isa, TransferKind::Apic, 50);
+        assert!(one == two, "{isa:?}: two threads give other bits than one");
     }
 }

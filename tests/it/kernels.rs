@@ -1,8 +1,11 @@
-//! Every kernel equals the textbook: dimension × shape × transfer × order, random particles, walls, damping and gravity.
+//! Every kernel equals the textbook: instruction set × dimension × shape × transfer × order, random particles, walls, damping and gravity.
 
 use lahar::boundary::{Wall, WallKind};
+use lahar::context::Context;
+use lahar::error::Status;
 use lahar::material::{Material, StressBatch};
 use lahar::shape::ShapeKind;
+use lahar::simd::Isa;
 use lahar::step::StepOrder;
 use lahar::step::naive::{self, Particle};
 use lahar::tensor::{Mat3, rotate, step_rotation, symmetric, symmetric_part};
@@ -12,7 +15,8 @@ use lahar::world::options::Options;
 use lahar::world::scratch::with_scratch;
 use nalgebra::{SMatrix, SVector};
 
-use crate::setup::{Random, add_points, context, elastic, read, world, write};
+use crate::setup::{Random, add_points, context_with, elastic, read, world, write};
+use crate::support::in_child;
 
 const H: f64 = 0.3;
 
@@ -72,8 +76,8 @@ fn walls(dimension: usize) -> Vec<Wall> {
     (0..4).map(wall).collect()
 }
 
-fn one_step_agrees<const D: usize>(options: &Options, threads: usize, particles: usize) {
-    let context = context(threads);
+fn one_step_agrees<const D: usize>(options: &Options, isa: Isa, threads: usize, particles: usize) {
+    let context = context_with(threads, isa);
     let material = elastic(&context, 1e4, 0.3);
     let mut random = Random::new(7);
     let mut world = world(&context, options);
@@ -111,12 +115,19 @@ fn one_step_agrees<const D: usize>(options: &Options, threads: usize, particles:
     }
     for (field, expected) in pairs {
         let d = difference(&read(&world, body, field), &expected);
-        assert!(d <= 1e-12, "{field} differs by {d:e} of its largest value for {options:?}");
+        assert!(
+            d <= 1e-12,
+            "{field} differs by {d:e} of its largest value for {isa:?}, {options:?}"
+        );
     }
 }
 
-/// Calls `run` for dimension × shape × transfer × order.
-fn table(run: impl Fn(&Options)) {
+/// Calls `run` for every instruction set × dimension × shape × transfer × order.
+fn table(run: impl Fn(Isa, &Options)) {
+    Isa::all().for_each(|isa| table_of(&|options| run(isa, options)));
+}
+
+fn table_of(run: &dyn Fn(&Options)) {
     for dimension in [2, 3] {
         for shape in [ShapeKind::Linear, ShapeKind::QuadraticBspline] {
             for transfer in [TransferKind::PicFlip, TransferKind::Apic] {
@@ -142,16 +153,34 @@ fn table(run: impl Fn(&Options)) {
 
 #[test]
 fn every_kernel_equals_the_textbook_after_one_step() {
-    table(|options| match options.dimension {
-        2 => one_step_agrees::<2>(options, 1, 300),
-        _ => one_step_agrees::<3>(options, 1, 300),
+    table(|isa, options| match options.dimension {
+        2 => one_step_agrees::<2>(options, isa, 1, 300),
+        _ => one_step_agrees::<3>(options, isa, 1, 300),
     });
 }
 
 #[test]
 fn every_kernel_equals_the_textbook_on_two_threads() {
-    table(|options| match options.dimension {
-        2 => one_step_agrees::<2>(options, 2, 6000),
-        _ => one_step_agrees::<3>(options, 2, 6000),
+    table(|isa, options| match options.dimension {
+        2 => one_step_agrees::<2>(options, isa, 2, 6000),
+        _ => one_step_agrees::<3>(options, isa, 2, 6000),
     });
+}
+
+#[test]
+fn the_environment_forces_an_instruction_set() {
+    let name = "kernels::the_environment_forces_an_instruction_set";
+    if in_child(name, &[("LAHAR_SIMD", "scalar")]) {
+        assert_eq!(Context::new(None).expect("a context").isa().name(), "scalar");
+    }
+}
+
+#[test]
+fn an_unknown_instruction_set_is_refused() {
+    let name = "kernels::an_unknown_instruction_set_is_refused";
+    if in_child(name, &[("LAHAR_SIMD", "avx1024")]) {
+        let error = Context::new(None).err().expect("no such instruction set");
+        assert_eq!(error.status, Status::InvalidArgument);
+        assert!(error.message.contains("avx1024") && error.message.contains("scalar"), "{error}");
+    }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use lahar::context::Context;
 use lahar::material::Material;
 use lahar::particles::seeding::{Fill, Region};
+use lahar::simd::Isa;
 use lahar::world::World;
 use lahar::world::host_arrays::{ParticleArrays, Strided, StridedMut, Strides};
 use lahar::world::options::Options;
@@ -13,7 +14,15 @@ use crate::support::plugin_path;
 
 /// A context with all shipped plugins. A plugin that was not built fails the test.
 pub fn context(threads: usize) -> Arc<Context> {
-    let context = Context::new(Some(threads)).expect("a context");
+    with_plugins(Context::new(Some(threads)).expect("a context"))
+}
+
+/// The same with a given instruction set.
+pub fn context_with(threads: usize, isa: Isa) -> Arc<Context> {
+    with_plugins(Context::with_isa(Some(threads), isa).expect("a context"))
+}
+
+fn with_plugins(context: Arc<Context>) -> Arc<Context> {
     for plugin in ["linear_elastic", "drucker_prager", "newtonian"] {
         context.load_plugin(&plugin_path(plugin)).expect("a plugin");
     }

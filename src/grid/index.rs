@@ -1,0 +1,120 @@
+//! Where a key stands in a list of keys: an open-addressing table of positions, so that memory is reserved before a step needs it.
+
+use super::blocks::NONE;
+use super::key::Key;
+use crate::error::Result;
+use crate::particles::reserve;
+
+/// Positions of keys in a list that the caller keeps; at most half full.
+#[derive(Debug, Default)]
+pub struct Index {
+    table: Vec<u32>,
+}
+
+impl Index {
+    /// Makes room for `count` keys in all.
+    ///
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the table as it was.
+    pub fn reserve<const D: usize>(&mut self, count: usize, keys: &[Key<D>]) -> Result<()> {
+        if 2 * count <= self.table.len() {
+            return Ok(());
+        }
+        let size = (2 * count).next_power_of_two().max(16);
+        let mut table = Vec::new();
+        reserve(&mut table, size, "the table of blocks")?;
+        table.resize(size, NONE);
+        let old = std::mem::replace(&mut self.table, table);
+        for position in old.into_iter().filter(|position| *position != NONE) {
+            self.insert(position, keys);
+        }
+        Ok(())
+    }
+
+    /// Forgets all keys.
+    pub fn clear(&mut self) {
+        self.table.fill(NONE);
+    }
+
+    /// Position of a key.
+    #[inline]
+    pub fn find<const D: usize>(&self, key: &Key<D>, keys: &[Key<D>]) -> Option<u32> {
+        let mask = self.table.len().checked_sub(1)?;
+        let mut place = home(key) & mask;
+        loop {
+            match self.table[place] {
+                NONE => return None,
+                position if keys[position as usize] == *key => return Some(position),
+                _ => place = (place + 1) & mask,
+            }
+        }
+    }
+
+    /// Adds the key at a position of the list; there is room, and the key is not in the table.
+    pub fn insert<const D: usize>(&mut self, position: u32, keys: &[Key<D>]) {
+        let mask = self.table.len() - 1;
+        let mut place = home(&keys[position as usize]) & mask;
+        while self.table[place] != NONE {
+            place = (place + 1) & mask;
+        }
+        self.table[place] = position;
+    }
+
+    /// Takes the key at a position of the list out, and moves those up that stood behind it for lack of their own place.
+    pub fn remove<const D: usize>(&mut self, position: u32, keys: &[Key<D>]) {
+        let mask = self.table.len() - 1;
+        let mut hole = home(&keys[position as usize]) & mask;
+        while self.table[hole] != position {
+            hole = (hole + 1) & mask;
+        }
+        let mut place = hole;
+        loop {
+            place = (place + 1) & mask;
+            let other = self.table[place];
+            if other == NONE {
+                break;
+            }
+            let from_home = place.wrapping_sub(home(&keys[other as usize])) & mask;
+            if from_home >= place.wrapping_sub(hole) & mask {
+                self.table[hole] = other;
+                hole = place;
+            }
+        }
+        self.table[hole] = NONE;
+    }
+
+    /// Memory [bytes].
+    pub fn bytes(&self) -> usize {
+        self.table.capacity() * size_of::<u32>()
+    }
+}
+
+/// Where a key would like to stand: its coordinates, mixed.
+fn home<const D: usize>(key: &Key<D>) -> usize {
+    let mix = |h: u64, k: &i32| {
+        (h.rotate_left(23) ^ u64::from(*k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    };
+    (key.iter().fold(0, mix) >> 32) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_found_after_others_went() {
+        let keys: Vec<Key<2>> = (0..900).map(|n| [n % 30 - 15, n / 30 - 7]).collect();
+        let mut index = Index::default();
+        assert_eq!(index.find(&keys[0], &keys), None);
+        for n in 0..900 {
+            index.reserve(n as usize + 1, &keys).expect("memory");
+            index.insert(n, &keys);
+        }
+        for n in (0..900).step_by(3) {
+            index.remove(n, &keys);
+        }
+        for n in 0..900 {
+            let expected = (n % 3 != 0).then_some(n);
+            assert_eq!(index.find(&keys[n as usize], &keys), expected);
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The plan that sorts all particles by block (Morton order) and cell, with a stable counting sort.
+
+use super::{Plan, SORTING, place_inside};
+use crate::error::Result;
+use crate::grid::index::Index;
+use crate::grid::key::{block_nodes, morton_order};
+use crate::grid::{Key, NONE, Run};
+use crate::particles::{refill, reserve};
+use crate::world::state::State;
+
+/// Buffers of the full sort.
+#[derive(Debug, Default)]
+pub struct Sorter<const D: usize> {
+    /// For each particle block × cells of a block + cell.
+    slot: Vec<u32>,
+    order: Vec<u32>,
+    count: Vec<u32>,
+    number: Index,
+    /// Keys of the blocks in which particles stand, in the order in which particles meet them.
+    owners: Vec<Key<D>>,
+    /// Numbers of the owners, along the Morton curve.
+    sorted: Vec<u32>,
+    rank: Vec<u32>,
+}
+
+/// Plans to sort all bodies. An error names a particle that is outside the grid.
+pub fn plan_sort<const D: usize>(
+    world: &State<D>,
+    sorter: &mut Sorter<D>,
+    plan: &mut Plan<D>,
+) -> Result<()> {
+    plan.clear(world)?;
+    plan.blocks_change = true;
+    number_blocks(world, sorter)?;
+    rank_owners(sorter)?;
+    sort_bodies(world, sorter, plan)
+}
+
+/// Numbers the blocks in the order in which particles meet them; `slot` becomes number × cells of a block + cell.
+fn number_blocks<const D: usize>(world: &State<D>, sorter: &mut Sorter<D>) -> Result<()> {
+    let space = world.space();
+    let cells = block_nodes(D) as u32;
+    sorter.slot.clear();
+    sorter.number.clear();
+    sorter.owners.clear();
+    reserve(&mut sorter.slot, world.particle_count(), SORTING)?;
+    let mut last: Option<(Key<D>, u32)> = None;
+    for body in &world.bodies {
+        for k in 0..body.particles.len() {
+            let (key, cell) = place_inside(world, body, &space, k)?;
+            let number = match last {
+                Some((same, number)) if same == key => number,
+                _ => number_of(sorter, &key)?,
+            };
+            last = Some((key, number));
+            sorter.slot.push(number * cells + cell);
+        }
+    }
+    Ok(())
+}
+
+/// Number of an owner, a new one for one not met before.
+fn number_of<const D: usize>(sorter: &mut Sorter<D>, key: &Key<D>) -> Result<u32> {
+    let Sorter { number, owners, .. } = sorter;
+    if let Some(known) = number.find(key, owners) {
+        return Ok(known);
+    }
+    let new = owners.len() as u32;
+    number.reserve(owners.len() + 1, owners)?;
+    reserve(owners, 1, SORTING)?;
+    owners.push(*key);
+    number.insert(new, owners);
+    Ok(new)
+}
+
+/// Sorts the owners along the Morton curve; `rank[number]` becomes the place of a block among them.
+fn rank_owners<const D: usize>(sorter: &mut Sorter<D>) -> Result<()> {
+    let Sorter { owners, sorted, rank, .. } = sorter;
+    for list in [&mut *sorted, &mut *rank] {
+        refill(list, owners.len(), SORTING)?;
+    }
+    sorted.extend(0..owners.len() as u32);
+    sorted.sort_unstable_by(|a, b| morton_order(&owners[*a as usize], &owners[*b as usize]));
+    rank.resize(owners.len(), 0);
+    for (place, number) in sorted.iter().enumerate() {
+        rank[*number as usize] = place as u32;
+    }
+    Ok(())
+}
+
+/// Sorts each body by block and cell. Particles of one cell keep their order.
+fn sort_bodies<const D: usize>(
+    world: &State<D>,
+    sorter: &mut Sorter<D>,
+    plan: &mut Plan<D>,
+) -> Result<()> {
+    let cells = block_nodes(D) as u32;
+    let Sorter { slot, order, count, owners, sorted, rank, .. } = sorter;
+    let mut start = 0;
+    for (b, body) in world.bodies.iter().enumerate() {
+        let n = body.particles.len();
+        let slots = &mut slot[start..start + n];
+        start += n;
+        for slot in slots.iter_mut() {
+            *slot = rank[(*slot / cells) as usize] * cells + *slot % cells;
+        }
+        let slots = &*slots;
+        let all = owners.len() * cells as usize;
+        order.clear();
+        reserve(order, n, SORTING)?;
+        if n < all / 8 {
+            // a small body in a large grid: counting would cost the whole grid
+            order.extend(0..n as u32);
+            order.sort_unstable_by_key(|k| (slots[*k as usize], *k));
+        } else {
+            order.resize(n, 0);
+            count.clear();
+            reserve(count, all + 1, SORTING)?;
+            counting_sort(slots, all, count, order);
+        }
+        let block = |k: &u32| slots[*k as usize] / cells;
+        let mut first = 0;
+        for run in order.chunk_by(|a, b| block(a) == block(b)) {
+            let end = first + run.len() as u32;
+            let key = owners[sorted[block(&run[0]) as usize] as usize];
+            plan.push(Run { block: NONE, body: b as u32, first, end }, key)?;
+            first = end;
+        }
+        plan.moves.sort(order);
+        plan.end_body();
+    }
+    Ok(())
+}
+
+/// The stable order of `slots`, whose values are below `values`.
+fn counting_sort(slots: &[u32], values: usize, count: &mut Vec<u32>, order: &mut [u32]) {
+    count.clear();
+    count.resize(values + 1, 0);
+    for slot in slots {
+        count[*slot as usize + 1] += 1;
+    }
+    for s in 1..count.len() {
+        count[s] += count[s - 1];
+    }
+    for (k, slot) in slots.iter().enumerate() {
+        let to = &mut count[*slot as usize];
+        order[*to as usize] = k as u32;
+        *to += 1;
+    }
+}

@@ -1,0 +1,227 @@
+//! The plan that moves only particles that left their block, and those that stand in the way.
+//!
+//! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
+//! particles at the one end go to the other, since the order inside a run is free.
+
+use super::{Plan, SORTING, place_inside};
+use crate::error::Result;
+use crate::grid::index::Index;
+use crate::grid::key::morton_order;
+use crate::grid::{Key, NONE, Run};
+use crate::particles::{refill, reserve};
+use crate::world::state::{Body, Space, State};
+
+/// A particle that left its block.
+#[derive(Clone, Copy, Debug)]
+struct Mover {
+    /// Place of the particle.
+    particle: u32,
+    /// Number of the run that it goes to.
+    target: u32,
+}
+
+/// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.
+#[derive(Debug, Default)]
+pub struct Regrouper<const D: usize> {
+    /// Number of the body's run in each slot of the grid.
+    run_of: Vec<u32>,
+    /// Those who leave, in storage order.
+    movers: Vec<Mover>,
+    /// For each run the first of its movers; one more at the end.
+    first_mover: Vec<u32>,
+    /// Keys of blocks that are new to the body.
+    new_keys: Vec<Key<D>>,
+    new_index: Index,
+    /// Numbers of the runs in those blocks, in Morton order.
+    new_runs: Vec<u32>,
+    /// Particles of each run after the moves.
+    count: Vec<u32>,
+    /// Numbers of all runs in Morton order.
+    sequence: Vec<u32>,
+    /// Movers by the run that they go to.
+    arrivals: Vec<u32>,
+    /// For each run the end of its arrivals; before that the number of them, then their start.
+    arrived: Vec<u32>,
+}
+
+/// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles would
+/// move; an error names a particle that is outside the grid.
+pub fn plan_moves<const D: usize>(
+    world: &State<D>,
+    buffers: &mut Regrouper<D>,
+    plan: &mut Plan<D>,
+) -> Result<bool> {
+    let most = world.particle_count() / 2;
+    plan.clear(world)?;
+    let slots = world.grid.keys().len();
+    if buffers.run_of.len() != slots {
+        refill(&mut buffers.run_of, slots, SORTING)?;
+        buffers.run_of.resize(slots, NONE);
+    }
+    let space = world.space();
+    for (b, body) in world.bodies.iter().enumerate() {
+        for (r, run) in body.runs.iter().enumerate() {
+            buffers.run_of[run.block as usize] = r as u32;
+        }
+        let found = find_movers(world, body, &space, buffers, most);
+        for run in &body.runs {
+            buffers.run_of[run.block as usize] = NONE;
+        }
+        if !found? {
+            return Ok(false);
+        }
+        order_runs(world, body, buffers)?;
+        sort_arrivals(buffers)?;
+        lay_out(world, b, buffers, plan)?;
+        if plan.moves.from.len() > most {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Lists those who left their block, with the run that they go to. False if there are more than `most`.
+fn find_movers<const D: usize>(
+    world: &State<D>,
+    body: &Body,
+    space: &Space<D>,
+    buffers: &mut Regrouper<D>,
+    most: usize,
+) -> Result<bool> {
+    let grid = &world.grid;
+    buffers.new_keys.clear();
+    buffers.new_index.clear();
+    refill(&mut buffers.movers, body.particles.len() / 8, SORTING)?;
+    refill(&mut buffers.first_mover, body.runs.len() + 1, SORTING)?;
+    let (mut run, mut key) = (Run { block: 0, body: 0, first: 0, end: 0 }, [0; D]);
+    for (w, word) in body.particles.moved.iter().enumerate() {
+        let mut bits = *word;
+        while bits != 0 {
+            let k = 64 * w as u32 + bits.trailing_zeros();
+            bits &= bits - 1;
+            while run.end <= k {
+                run = body.runs[buffers.first_mover.len()];
+                key = grid.keys()[run.block as usize];
+                buffers.first_mover.push(buffers.movers.len() as u32);
+            }
+            let (new, _) = place_inside(world, body, space, k as usize)?;
+            if new != key {
+                let slot = grid.find_near(run.block, &new);
+                let known = slot.map_or(NONE, |slot| buffers.run_of[slot as usize]);
+                let target =
+                    if known == NONE { new_run(buffers, body.runs.len(), new)? } else { known };
+                reserve(&mut buffers.movers, 1, SORTING)?;
+                buffers.movers.push(Mover { particle: k, target });
+            }
+        }
+    }
+    buffers.first_mover.resize(body.runs.len() + 1, buffers.movers.len() as u32);
+    Ok(buffers.movers.len() <= most)
+}
+
+/// Number of the run in a block that is new to a body of `runs` runs.
+fn new_run<const D: usize>(buffers: &mut Regrouper<D>, runs: usize, key: Key<D>) -> Result<u32> {
+    let Regrouper { new_keys, new_index, .. } = buffers;
+    let number = match new_index.find(&key, new_keys) {
+        Some(number) => number,
+        None => {
+            new_index.reserve(new_keys.len() + 1, new_keys)?;
+            reserve(new_keys, 1, SORTING)?;
+            new_keys.push(key);
+            new_index.insert(new_keys.len() as u32 - 1, new_keys);
+            new_keys.len() as u32 - 1
+        }
+    };
+    Ok(runs as u32 + number)
+}
+
+/// Counts the particles of each run after the moves, and puts the new runs in Morton order among the others.
+fn order_runs<const D: usize>(
+    world: &State<D>,
+    body: &Body,
+    buffers: &mut Regrouper<D>,
+) -> Result<()> {
+    let Regrouper { movers, first_mover, new_keys, new_runs, count, sequence, .. } = buffers;
+    let (old, all) = (body.runs.len(), body.runs.len() + new_keys.len());
+    for list in [&mut *count, &mut *sequence, &mut *new_runs] {
+        refill(list, all, SORTING)?;
+    }
+    for (r, run) in body.runs.iter().enumerate() {
+        count.push(run.end - run.first - (first_mover[r + 1] - first_mover[r]));
+    }
+    count.resize(all, 0);
+    for mover in movers {
+        count[mover.target as usize] += 1;
+    }
+    let keys = world.grid.keys();
+    let key = |r: u32| match body.runs.get(r as usize) {
+        Some(run) => &keys[run.block as usize],
+        None => &new_keys[r as usize - old],
+    };
+    new_runs.extend(old as u32..all as u32);
+    new_runs.sort_unstable_by(|a, b| morton_order(key(*a), key(*b)));
+    let mut next = 0;
+    for new in &*new_runs {
+        while next < old && morton_order(key(next as u32), key(*new)).is_lt() {
+            sequence.push(next as u32);
+            next += 1;
+        }
+        sequence.push(*new);
+    }
+    sequence.extend(next as u32..old as u32);
+    Ok(())
+}
+
+/// Sorts the movers by the run that they go to; those of a run keep their order.
+fn sort_arrivals<const D: usize>(buffers: &mut Regrouper<D>) -> Result<()> {
+    let Regrouper { movers, count, arrivals, arrived, .. } = buffers;
+    refill(arrivals, movers.len(), SORTING)?;
+    arrivals.resize(movers.len(), 0);
+    refill(arrived, count.len() + 1, SORTING)?;
+    arrived.resize(count.len() + 1, 0);
+    for mover in &*movers {
+        arrived[mover.target as usize + 1] += 1;
+    }
+    for r in 1..arrived.len() {
+        arrived[r] += arrived[r - 1];
+    }
+    for mover in &*movers {
+        let to = &mut arrived[mover.target as usize];
+        arrivals[*to as usize] = mover.particle;
+        *to += 1;
+    }
+    Ok(())
+}
+
+/// Gives every run its new range and adds the moves that fill it.
+fn lay_out<const D: usize>(
+    world: &State<D>,
+    b: usize,
+    buffers: &Regrouper<D>,
+    plan: &mut Plan<D>,
+) -> Result<()> {
+    let Regrouper { movers, first_mover, new_keys, count, sequence, arrivals, arrived, .. } =
+        buffers;
+    let (runs, keys) = (&world.bodies[b].runs, world.grid.keys());
+    let mut first = 0;
+    for r in sequence.iter().map(|r| *r as usize) {
+        let end = first + count[r];
+        let (block, key, old, leavers) = match runs.get(r) {
+            Some(run) => {
+                let leavers = &movers[first_mover[r] as usize..first_mover[r + 1] as usize];
+                (run.block, keys[run.block as usize], run.first..run.end, leavers)
+            }
+            None => (NONE, new_keys[r - runs.len()], first..first, &[][..]),
+        };
+        plan.blocks_change |= block == NONE || first == end;
+        if first < end {
+            let start = if r > 0 { arrived[r - 1] } else { 0 };
+            let arrivals = &arrivals[start as usize..arrived[r] as usize];
+            plan.moves.refill(old, first..end, leavers.iter().map(|m| m.particle), arrivals);
+            plan.push(Run { block, body: b as u32, first, end }, key)?;
+        }
+        first = end;
+    }
+    plan.end_body();
+    Ok(())
+}
