@@ -11,7 +11,6 @@ use lahar::context::Context;
 use lahar::world::World;
 use serde_json::json;
 use std::io::{BufRead, Write};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// Builds the scene and obeys until the end of the input. `dt` [s] is the length of the steps, the stable one if not given.
@@ -27,7 +26,7 @@ pub fn serve(
     let before = resident("VmRSS")?;
     let mut world = scene.build(&context, &folder, particles).map_err(text)?;
     let count = world.totals(None).map_err(text)?.particles;
-    answer(&json!({ "particles": count, "simd": simd_name(&context) }).to_string())?;
+    answer(&json!({ "particles": count, "simd": context.isa().name() }).to_string())?;
     for line in std::io::stdin().lock().lines() {
         let line = line.map_err(|e| e.to_string())?;
         let (command, number) = line.split_once(' ').unwrap_or((&line, "0"));
@@ -53,11 +52,6 @@ pub fn serve(
         }
     }
     Ok(())
-}
-
-/// The path of the kernels that this context runs.
-pub fn simd_name(_context: &Arc<Context>) -> &'static str {
-    "baseline"
 }
 
 fn state(world: &World, bytes: f64) -> lahar::error::Result<String> {
