@@ -17,6 +17,7 @@ impl Stick {
     pub fn build(source: &Path) -> Result<Self, String> {
         let folder = process::release_folder()?.join("stick");
         copy_folder(source, &folder)?;
+        leave_this_workspace(&folder.join("Cargo.toml"))?;
         let stick = Self { folder, samples: Vec::new() };
         process::run_command(stick.cargo().args(["build", "--release"]))?;
         Ok(stick)
@@ -50,6 +51,16 @@ impl Stick {
 fn figure(printed: &str) -> Option<f64> {
     let line = printed.lines().find(|line| line.contains("ns/particle/step"))?;
     line.rsplit_once(" all ")?.1.split_whitespace().next()?.parse().ok()
+}
+
+/// The copy stands inside this repository but is not of its workspace.
+fn leave_this_workspace(manifest: &Path) -> Result<(), String> {
+    let text = |e: std::io::Error| format!("{}: {e}", manifest.display());
+    let mut content = std::fs::read_to_string(manifest).map_err(text)?;
+    if !content.lines().any(|line| line.trim() == "[workspace]") {
+        content.push_str("\n[workspace]\n");
+    }
+    std::fs::write(manifest, content).map_err(text)
 }
 
 fn copy_folder(from: &Path, to: &Path) -> Result<(), String> {
