@@ -7,9 +7,9 @@ Taichi ships: `+=` on the grid is atomic) or `plain` (load, add, store: right on
 
 import sys
 
-import taichi as ti
+from scene import Scene, serve  # before the libraries that print
 
-from scene import Scene, serve
+import taichi as ti
 
 scene = Scene(sys.argv[1])
 THREADS, ATOMIC = int(sys.argv[2]), sys.argv[3] == "atomic"

@@ -7,10 +7,10 @@ doi:10.1145/3197517.3201293. Warp runs a kernel on one thread of the CPU. Argume
 import pathlib
 import sys
 
+from scene import Scene, serve  # before the libraries that print
+
 import numpy as np
 import warp as wp
-
-from scene import Scene, serve
 
 scene = Scene(sys.argv[1])
 wp.config.quiet, wp.config.enable_backward = True, False

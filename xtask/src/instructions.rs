@@ -71,7 +71,7 @@ fn count(scene: &Scene, path: &str) -> Result<f64, String> {
 
 /// Instructions of a whole run of some steps, and its number of particles.
 fn collected(scene: &Scene, path: &str, steps: u64) -> Result<(f64, f64), String> {
-    let exe = std::env::current_exe().map_err(|e| e.to_string())?;
+    let exe = process::this_program()?;
     let name = format!("{} ({path}) under valgrind", scene.name);
     let text = |e: std::io::Error| format!("{name}: {e}");
     let mut child = Command::new("valgrind")

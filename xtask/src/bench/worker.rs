@@ -1,6 +1,7 @@
 //! Processes that are timed in turns: this program with one world, or a peer. See `measure` for what they understand.
 
 use super::scenes::Scene;
+use crate::process;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -45,7 +46,7 @@ impl Worker {
         simd: Option<&str>,
         dt: Option<f64>,
     ) -> Result<Self, String> {
-        let exe = std::env::current_exe().map_err(|e| e.to_string())?;
+        let exe = process::this_program()?;
         let mut command = Command::new(exe);
         command.args(["bench", scene.name, "--child"]);
         command.args(["--particles", &particles.to_string()]);
