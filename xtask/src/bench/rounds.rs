@@ -65,7 +65,7 @@ impl Row {
     pub fn to_json(&self) -> Value {
         json!({
             "scene": self.scene,
-            "particles": self.particles,
+            "particles": self.particles as u64,
             "threads": self.threads,
             "simd": self.simd,
             "ns_per_particle_step": self.nanoseconds(),
