@@ -8,6 +8,7 @@ mod checks;
 mod demo;
 mod fortran;
 mod headers;
+mod instructions;
 mod picture;
 mod process;
 mod setup;
@@ -30,13 +31,19 @@ enum Task {
     Demo,
     /// Builds the workspace and runs every test
     Test,
-    /// Formatting, lints, headers, then every test
+    /// Formatting, lints, headers, counts of instructions, then every test
     Ci,
     /// Writes the C headers and the Fortran bindings from the Rust sources
     Headers {
         /// Only compares with the committed files
         #[arg(long)]
         check: bool,
+    },
+    /// Counts the instructions of a step under valgrind and compares with benches/instructions.json
+    Instructions {
+        /// Writes the counts as the new baseline
+        #[arg(long)]
+        write: bool,
     },
     /// Measures nanoseconds per particle and step
     Bench(bench::Arguments),
@@ -49,6 +56,7 @@ fn main() -> ExitCode {
         Task::Test => checks::test(),
         Task::Ci => checks::ci(),
         Task::Headers { check } => checks::headers(check),
+        Task::Instructions { write } => instructions::run(write),
         Task::Bench(arguments) => bench::run(&arguments),
     };
     match result {

@@ -18,6 +18,11 @@ pub fn release_folder() -> Result<PathBuf, String> {
     exe.parent().map(Path::to_path_buf).ok_or_else(|| format!("{} has no folder", exe.display()))
 }
 
+/// This program, to be started once more. A build that ran meanwhile may have written it anew.
+pub fn this_program() -> Result<PathBuf, String> {
+    Ok(release_folder()?.join("xtask"))
+}
+
 /// Runs a program in the repository's folder with its output shown; anything but success is an error.
 pub fn run(program: &str, arguments: &[&str]) -> Result<(), String> {
     run_command(Command::new(program).args(arguments).current_dir(root()))

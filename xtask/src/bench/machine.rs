@@ -26,13 +26,6 @@ impl Machine {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
         }
     }
-
-    /// The same for programs.
-    pub fn to_json(&self) -> serde_json::Value {
-        serde_json::json!({
-            "date": self.date, "commit": self.commit, "processor": self.processor, "cores": self.cores,
-        })
-    }
 }
 
 impl fmt::Display for Machine {

@@ -1,28 +1,37 @@
 //! `cargo xtask bench`: nanoseconds per particle and step, beside the copy bandwidth of the same run.
 //!
-//! Each scene runs in a process of its own, so that its peak memory is its own. Only ratios taken in one run can be
-//! compared on a shared machine; the rows are appended to `docs/perf/bench.md`.
+//! Each world lives in a process of its own, so that its peak memory is its own, and worlds whose times are compared are
+//! stepped in turns. Only ratios taken in one run can be compared on a shared machine; the tables are appended to
+//! `docs/perf/bench.md`, those of a peer to `docs/perf/peers.md`.
 
+mod bandwidth;
 mod machine;
 mod measure;
-mod scenes;
+mod peers;
+mod report;
+mod rounds;
+pub mod scenes;
+mod stages;
+mod stick;
+mod targets;
+mod worker;
 
 use crate::process;
-use machine::Machine;
-use measure::Row;
-use scenes::{SCENES, Scene};
-use std::fmt::Write as _;
-use std::process::Command;
+use bandwidth::Bandwidth;
+use rounds::{Case, Row};
+use scenes::{APIC_ELASTIC, FAR, LINKED, SCENES, Scene};
+use std::path::PathBuf;
+use stick::Stick;
 
 /// What `bench` takes.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// One scene; all of them without it
+    /// One scene; all of them and the comparisons between them without it
     scene: Option<String>,
-    /// Threads of the engine's pool
-    #[arg(long, default_value_t = 1)]
-    threads: usize,
-    /// Prints JSON instead of a table
+    /// Threads of the engine's pool; 1 and 2 without it
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Prints one object a line instead of tables
     #[arg(long)]
     json: bool,
     /// Particles of a scene, about
@@ -31,82 +40,103 @@ pub struct Arguments {
     /// Prints only; appends nothing to docs/perf
     #[arg(long)]
     dry_run: bool,
-    /// Measures in this process and prints one line of JSON
+    /// Seconds of a sample; the fifth part of the time that a row is timed
+    #[arg(long, default_value_t = 1.0)]
+    seconds: f64,
+    /// Path of the kernels that the engine is to run: scalar, avx2 or avx512
+    #[arg(long, value_name = "PATH")]
+    simd: Option<String>,
+    /// A cargo project that prints ns/particle/step, to be timed in turns with the first scene
+    #[arg(long, value_name = "FOLDER")]
+    stick: Option<PathBuf>,
+    /// Steps a flying block in the engine and in this peer, in turns
+    #[arg(long)]
+    peer: Option<peers::Peer>,
+    /// Holds a world in this process and obeys standard input
     #[arg(long, hide = true)]
     child: bool,
+    /// Length of the steps of a child [s]
+    #[arg(long, hide = true)]
+    dt: Option<f64>,
 }
 
-/// Measures the chosen scenes.
+/// Measures what is asked for.
 pub fn run(arguments: &Arguments) -> Result<(), String> {
-    let chosen = chosen(arguments.scene.as_deref())?;
     if arguments.child {
-        for scene in chosen {
-            let row = measure::measure(scene, arguments.particles, arguments.threads)?;
-            println!("{}", row.to_json());
-        }
-        return Ok(());
+        let scene = scenes::find(arguments.scene.as_deref().unwrap_or_default())?;
+        let threads = arguments.threads.unwrap_or(1);
+        return measure::serve(scene, arguments.particles, threads, arguments.dt);
     }
+    let whole = arguments.scene.is_none();
+    if !whole && arguments.scene.as_deref() == Some(scenes::ABSENT) {
+        return Err(format!(
+            "{} is absent: the engine has no cubic shape function",
+            scenes::ABSENT
+        ));
+    }
+    let scene = arguments.scene.as_deref().map(scenes::find).transpose()?;
     process::cargo(&["build", "--release", "--workspace"])?;
+    if let Some(peer) = arguments.peer {
+        return peers::run(peer, arguments);
+    }
+    let mut stick = arguments.stick.as_deref().map(Stick::build).transpose()?;
     let mut rows = Vec::new();
-    for scene in chosen {
-        eprintln!("{} ...", scene.name);
-        rows.push(in_child(scene, arguments)?);
+    let groups = scene.map_or_else(|| all(arguments), |scene| vec![pair(arguments, scene)]);
+    let most = threads(arguments).into_iter().max().unwrap_or(1);
+    let mut bandwidth = Bandwidth::new(most);
+    for group in groups {
+        let with_stick = if is_first(&group) { stick.as_mut() } else { None };
+        let how = (arguments.seconds, arguments.simd.as_deref());
+        rows.extend(rounds::measure(&group, how, &mut bandwidth, with_stick)?);
     }
-    let machine = Machine::read();
+    show(arguments, &rows, stick.as_ref())
+}
+
+/// The groups of worlds that are timed in turns, for a run that shows everything.
+fn all(arguments: &Arguments) -> Vec<Vec<Case>> {
+    let n = arguments.particles;
+    let least = threads(arguments)[0];
+    let case = |scene, particles, threads| Case { scene, particles, threads };
+    let mut first = pair(arguments, &APIC_ELASTIC);
+    first.push(case(&APIC_ELASTIC, n / 10, least));
+    first.push(case(&APIC_ELASTIC, 4 * n, least));
+    first.push(case(&FAR, n, least));
+    first.push(case(&LINKED, n, least));
+    let mut groups = vec![first];
+    groups.extend(SCENES[1..].iter().map(|scene| pair(arguments, scene)));
+    let small = threads(arguments).into_iter();
+    groups.push(small.map(|t| case(&APIC_ELASTIC, targets::SMALL, t)).collect());
+    groups
+}
+
+/// One scene with each number of threads.
+fn pair(arguments: &Arguments, scene: &'static Scene) -> Vec<Case> {
+    let particles = arguments.particles;
+    threads(arguments).into_iter().map(|threads| Case { scene, particles, threads }).collect()
+}
+
+fn threads(arguments: &Arguments) -> Vec<usize> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    match arguments.threads {
+        Some(threads) => vec![threads],
+        None if cores > 1 => vec![1, 2],
+        None => vec![1],
+    }
+}
+
+/// Whether a group is the one that a stick is compared with.
+fn is_first(group: &[Case]) -> bool {
+    group[0].scene.name == APIC_ELASTIC.name && group[0].particles != targets::SMALL
+}
+
+fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<(), String> {
+    let whole = arguments.scene.is_none();
+    let checks = targets::judge(rows, arguments.particles, stick);
+    let tables = format!("{}\n{}", report::rows(rows, whole), report::checks(&checks));
     if arguments.json {
-        let rows: Vec<_> = rows.iter().map(Row::to_json).collect();
-        println!("{}", serde_json::json!({ "machine": machine.to_json(), "rows": rows }));
+        print!("{}", report::json(rows, whole));
     } else {
-        print!("{}", table(&rows));
+        print!("{tables}");
     }
-    if arguments.dry_run { Ok(()) } else { append(&machine, &rows) }
-}
-
-fn chosen(name: Option<&str>) -> Result<Vec<&'static Scene>, String> {
-    let Some(name) = name else { return Ok(SCENES.iter().collect()) };
-    let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
-    match SCENES.iter().find(|scene| scene.name == name) {
-        Some(scene) => Ok(vec![scene]),
-        None => Err(format!("no scene is named `{name}` (known: {})", known.join(", "))),
-    }
-}
-
-fn in_child(scene: &Scene, arguments: &Arguments) -> Result<Row, String> {
-    let exe = std::env::current_exe().map_err(|e| e.to_string())?;
-    let mut child = Command::new(exe);
-    child.args(["bench", scene.name, "--child"]);
-    child.args(["--threads", &arguments.threads.to_string()]);
-    child.args(["--particles", &arguments.particles.to_string()]);
-    let printed = process::output_of(&mut child)?;
-    Row::from_json(printed.trim()).ok_or_else(|| format!("no result in `{printed}`"))
-}
-
-fn table(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "| scene | particles | threads | ns/particle/step | bytes/particle | copy GB/s | times memory limit |\n\
-         |---|---:|---:|---:|---:|---:|---:|\n",
-    );
-    for row in rows {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {:.1} | {:.0} | {:.1} | {:.1} |",
-            row.scene,
-            row.particles,
-            row.threads,
-            row.nanoseconds,
-            row.bytes,
-            row.bandwidth / 1e9,
-            row.ratio()
-        );
-    }
-    text
-}
-
-fn append(machine: &Machine, rows: &[Row]) -> Result<(), String> {
-    let file = process::root().join("docs/perf/bench.md");
-    let before = std::fs::read_to_string(&file).map_err(|e| format!("{}: {e}", file.display()))?;
-    let text = format!("{}\n\n## {machine}\n\n{}", before.trim_end(), table(rows));
-    std::fs::write(&file, text).map_err(|e| format!("{}: {e}", file.display()))?;
-    eprintln!("appended to docs/perf/bench.md");
-    Ok(())
+    if arguments.dry_run { Ok(()) } else { report::append("bench.md", &tables) }
 }

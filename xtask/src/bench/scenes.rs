@@ -1,8 +1,13 @@
-//! The scenes: a closed box with slip walls, full of one material that is stirred by an eddy.
+//! The scenes. All go in the order of the stages that updates stresses last (USL).
 //!
-//! The eddy v = A (sin pi x/L cos pi y/L, -cos pi x/L sin pi y/L) keeps the volume and does not cross the walls, shears
-//! everywhere, and moves particles from cell to cell, so that sorting is part of the measured step. Sand starts at a
-//! pressure that the walls keep up, and is in plastic flow after the first few steps.
+//! * **Box**: closed, slip walls, full of one material that an eddy stirs. The eddy
+//!   v = A (sin πx/L cos πy/L, −cos πx/L sin πy/L) keeps the volume and does not cross the walls, shears everywhere, and
+//!   moves particles from cell to cell.
+//! * **Column**: sand on a floor that it sticks to, twice as high as wide, in the middle of its collapse. It starts with the
+//!   stresses of its weight and the velocities v = a (2xz/H, 2yz/H, −2z²/H), which keep the volume and vanish at the
+//!   floor, so that its front moves on through new blocks from the first step. Particles are shaken off their lattice,
+//!   otherwise whole layers would change cells in the same step.
+//! * **Flight**: a block that turns, deforms and flies in empty space; what the peers compute too.
 
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
@@ -15,6 +20,7 @@ use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::host_arrays::{Strided, StridedMut, Strides};
 use lahar::world::options::Options;
+use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,28 +28,40 @@ use std::sync::Arc;
 pub struct Scene {
     /// Name on the command line and in the tables.
     pub name: &'static str,
+    setting: Setting,
     dimension: usize,
     shape: ShapeKind,
     transfer: TransferKind,
     plugin: &'static str,
     model: &'static str,
     parameters: &'static [(&'static str, f64)],
-    density: f64,  // [kg/m^3]
-    pressure: f64, // at the start [Pa]
-    speed: f64,    // A [m/s]
+    density: f64, // [kg/m^3]
+    speed: f64,   // A, or a H at the top of the column [m/s]
+    far: bool,    // one more particle, a thousand boxes away along every axis
+    linked: bool, // the model is part of the program instead of a plugin
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Setting {
+    Box,
+    Column,
+    Flight,
 }
 
 const ELASTIC: &[(&str, f64)] = &[("youngs_modulus", 1e7), ("poissons_ratio", 0.3)];
 const SAND: &[(&str, f64)] = &[
-    ("youngs_modulus", 1e7),
+    ("youngs_modulus", 1e6), // loose, so that it moves far in a step
     ("poissons_ratio", 0.3),
     ("friction_angle", 30.0),
     ("cohesion", 0.0),
 ];
 const WATER: &[(&str, f64)] = &[("bulk_modulus", 1e7), ("viscosity", 1.0)];
 
-const APIC_ELASTIC: Scene = Scene {
+/// The first scene of the tables, and the one that sizes, domain and peers are compared with.
+pub static APIC_ELASTIC: Scene = ELASTIC_BOX;
+const ELASTIC_BOX: Scene = Scene {
     name: "3d-quadratic-apic-elastic",
+    setting: Setting::Box,
     dimension: 3,
     shape: ShapeKind::QuadraticBspline,
     transfer: TransferKind::Apic,
@@ -51,20 +69,21 @@ const APIC_ELASTIC: Scene = Scene {
     model: "linear_elastic",
     parameters: ELASTIC,
     density: 1600.0,
-    pressure: 0.0,
     speed: 2.0,
+    far: false,
+    linked: false,
 };
 
-/// All scenes, in the order of the tables.
+/// The scenes that each have a row of targets, in the order of the tables.
 pub static SCENES: [Scene; 5] = [
-    APIC_ELASTIC,
+    ELASTIC_BOX,
     Scene {
-        name: "3d-quadratic-apic-drucker-prager",
+        name: "3d-quadratic-apic-drucker-prager-flow",
+        setting: Setting::Column,
         plugin: "lahar_drucker_prager",
         model: "drucker_prager",
         parameters: SAND,
-        pressure: 1e4,
-        ..APIC_ELASTIC
+        ..ELASTIC_BOX
     },
     Scene {
         name: "3d-quadratic-apic-newtonian",
@@ -72,48 +91,100 @@ pub static SCENES: [Scene; 5] = [
         model: "newtonian",
         parameters: WATER,
         density: 1000.0,
-        ..APIC_ELASTIC
+        ..ELASTIC_BOX
     },
     Scene {
         name: "3d-linear-flip-elastic",
         shape: ShapeKind::Linear,
         transfer: TransferKind::PicFlip,
-        ..APIC_ELASTIC
+        ..ELASTIC_BOX
     },
-    Scene { name: "2d-quadratic-apic-elastic", dimension: 2, ..APIC_ELASTIC },
+    Scene { name: "2d-quadratic-apic-elastic", dimension: 2, ..ELASTIC_BOX },
 ];
 
-const EDGE: f64 = 1.0; // of the box [m]
+/// The first scene in a domain that is a thousand times larger along every axis.
+pub static FAR: Scene = Scene { name: "3d-quadratic-apic-elastic-far", far: true, ..ELASTIC_BOX };
+
+/// The first scene with the model linked statically.
+pub static LINKED: Scene =
+    Scene { name: "3d-quadratic-apic-elastic-linked", linked: true, ..ELASTIC_BOX };
+
+/// What the peers compute too.
+pub static FLIGHT: Scene = Scene {
+    name: "3d-quadratic-apic-elastic-flight",
+    setting: Setting::Flight,
+    speed: 6.0,
+    ..ELASTIC_BOX
+};
+
+/// A row of the targets whose shape function does not exist yet.
+pub const ABSENT: &str = "3d-cubic-apic-elastic";
+
+/// The scene with this name.
+pub fn find(name: &str) -> std::result::Result<&'static Scene, String> {
+    let all = || SCENES.iter().chain([&FAR, &LINKED, &FLIGHT]);
+    all().find(|scene| scene.name == name).ok_or_else(|| {
+        let known: Vec<&str> = all().map(|scene| scene.name).collect();
+        format!("no scene is named `{name}` (known: {})", known.join(", "))
+    })
+}
+
+const EDGE: f64 = 1.0; // of the box, the column and the flying block [m]
 const PER_CELL: i32 = 2; // particles per cell and axis
+const GRAVITY: f64 = 9.81; // on the column [m/s^2]
+const SIDE_PRESSURE: f64 = 0.5; // horizontal over vertical stress in the column
+const SHAKE: f64 = 0.2; // of the lattice pitch of the column's particles
+const FAR_AWAY: f64 = 1000.0 * EDGE;
 
 impl Scene {
     /// The world at time 0 with about `particles` particles; the plugin comes from `folder`.
     pub fn build(&self, context: &Arc<Context>, folder: &Path, particles: usize) -> Result<World> {
-        let file = folder.join(format!("lib{}.so", self.plugin));
-        context.load_plugin(&file.to_string_lossy())?;
+        self.register(context, folder)?;
         let material = Material::new(context, self.model, self.parameters)?;
-        let per_axis = (particles as f64).powf(1.0 / self.dimension as f64);
-        let cells = (per_axis / f64::from(PER_CELL)).round().max(4.0);
-        let spacing = EDGE / cells;
+        let spacing = self.spacing(particles);
         let mut world = World::new(context, &self.options(spacing))?;
-        let mut corner = [EDGE; 3];
-        corner[self.dimension..].fill(0.0);
-        let fill = Fill {
-            particles_per_cell: PER_CELL,
-            density: self.density,
-            stress: [-self.pressure, -self.pressure, -self.pressure, 0.0, 0.0, 0.0],
-            ..Fill::default()
-        };
-        let region = Region::Box { min: [0.0; 3], max: corner };
-        let body = world.add_shape(&material, &region, &fill)?;
-        for axis in 0..self.dimension {
-            for (side, position) in [(1, 0.0), (-1, EDGE)] {
-                let kind = WallKind::Slip;
-                world.add_wall(&Wall { axis, side, position, kind, friction: 0.0 })?;
+        self.add_walls(&mut world)?;
+        match self.setting {
+            Setting::Column => self.add_column(&mut world, &material)?,
+            Setting::Box | Setting::Flight => {
+                let body = world.add_shape(&material, &self.region(), &self.fill())?;
+                let position = read_points(&world, body, "position", self.dimension)?;
+                write_points(&mut world, body, "velocity", &self.velocities(&position))?;
             }
         }
-        self.stir(&mut world, body)?;
+        if self.far {
+            let corner = [FAR_AWAY; 3];
+            let end = [FAR_AWAY + spacing / f64::from(PER_CELL); 3];
+            world.add_shape(&material, &Region::Box { min: corner, max: end }, &self.fill())?;
+        }
         Ok(world)
+    }
+
+    /// Makes the scene's model known to the context.
+    fn register(&self, context: &Context, folder: &Path) -> Result<()> {
+        if self.linked {
+            let table = lahar_model_linear_elastic::plugin();
+            return context.register_plugin(table).map(drop);
+        }
+        let file = folder.join(format!("lib{}.so", self.plugin));
+        context.load_plugin(&file.to_string_lossy()).map(drop)
+    }
+
+    /// Distance of the grid's nodes for about so many particles [m].
+    pub fn spacing(&self, particles: usize) -> f64 {
+        let volume = if self.setting == Setting::Column { 2.0 } else { 1.0 }; // in EDGE^D
+        let per_axis = (particles as f64 / volume).powf(1.0 / self.dimension as f64);
+        EDGE / (per_axis / f64::from(PER_CELL)).round().max(4.0)
+    }
+
+    /// Edge of the cube that holds the body at first [m].
+    pub fn edge(&self) -> f64 {
+        EDGE
+    }
+
+    /// Young's modulus [Pa], Poisson's ratio and density [kg/m³] of an elastic scene.
+    pub fn elastic(&self) -> [f64; 3] {
+        [ELASTIC[0].1, ELASTIC[1].1, self.density]
     }
 
     /// Walls stand on node planes for linear and on half-cell planes for quadratic functions.
@@ -122,6 +193,7 @@ impl Scene {
             ShapeKind::Linear => 0.0,
             ShapeKind::QuadraticBspline => 0.5 * spacing,
         };
+        let fall = if self.setting == Setting::Column { -GRAVITY } else { 0.0 };
         Options {
             dimension: self.dimension,
             spacing,
@@ -129,23 +201,122 @@ impl Scene {
             shape: self.shape,
             transfer: self.transfer,
             order: StepOrder::Usl,
+            gravity: [0.0, 0.0, fall],
             ..Options::default()
         }
     }
 
-    fn stir(&self, world: &mut World, body: i64) -> Result<()> {
-        let count = world.particle_count(body)?;
-        let dimension = self.dimension;
-        let mut position = vec![0.0; count * dimension];
-        let strides = Strides::new(count, dimension, 0, 0)?; // point after point
-        world.read_field(body, "position", &mut StridedMut::new(&mut position, strides)?)?;
-        let k = std::f64::consts::PI / EDGE;
-        let mut velocity = vec![0.0; count * dimension];
-        for (v, x) in velocity.chunks_mut(dimension).zip(position.chunks(dimension)) {
-            let ((sin_x, cos_x), (sin_y, cos_y)) = ((k * x[0]).sin_cos(), (k * x[1]).sin_cos());
-            v[0] = self.speed * sin_x * cos_y;
-            v[1] = -self.speed * cos_x * sin_y;
+    fn add_walls(&self, world: &mut World) -> Result<()> {
+        let mut wall = |axis, side, position, kind| {
+            world.add_wall(&Wall { axis, side, position, kind, friction: 0.0 }).map(drop)
+        };
+        match self.setting {
+            Setting::Flight => Ok(()),
+            Setting::Column => wall(2, 1, 0.0, WallKind::Sticky),
+            Setting::Box => (0..self.dimension).try_for_each(|axis| {
+                wall(axis, 1, 0.0, WallKind::Slip)?;
+                wall(axis, -1, EDGE, WallKind::Slip)
+            }),
         }
-        world.write_field(body, "velocity", &Strided::new(&velocity, strides)?)
+    }
+
+    fn region(&self) -> Region {
+        let mut max = [EDGE; 3];
+        if self.setting == Setting::Column {
+            max[2] = 2.0 * EDGE;
+        }
+        max[self.dimension..].fill(0.0);
+        Region::Box { min: [0.0; 3], max }
+    }
+
+    fn fill(&self) -> Fill {
+        Fill { particles_per_cell: PER_CELL, density: self.density, ..Fill::default() }
+    }
+
+    fn add_column(&self, world: &mut World, material: &Arc<Material>) -> Result<()> {
+        let body = world.add_shape(material, &self.region(), &self.fill())?;
+        let mut position = read_points(world, body, "position", 3)?;
+        let shake = SHAKE * world.options().spacing / f64::from(PER_CELL);
+        let mut seed = 0x2545_f491_4f6c_dd1d;
+        position.iter_mut().for_each(|x| *x += shake * random(&mut seed));
+        let mut stress = Vec::with_capacity(2 * position.len());
+        for x in position.chunks(3) {
+            let down = -self.density * GRAVITY * (2.0 * EDGE - x[2]);
+            stress.extend([SIDE_PRESSURE * down, SIDE_PRESSURE * down, down, 0.0, 0.0, 0.0]);
+        }
+        write_points(world, body, "position", &position)?;
+        write_points(world, body, "stress", &stress)?;
+        write_points(world, body, "velocity", &self.velocities(&position))
+    }
+
+    /// Velocities at the positions, point after point [m/s].
+    fn velocities(&self, position: &[f64]) -> Vec<f64> {
+        let mut velocity = vec![0.0; position.len()];
+        let points = velocity.chunks_mut(self.dimension).zip(position.chunks(self.dimension));
+        for (v, x) in points {
+            let y = [x[0], x[1], x.get(2).copied().unwrap_or(0.0)];
+            v.copy_from_slice(&self.velocity(y)[..self.dimension]);
+        }
+        velocity
+    }
+
+    fn velocity(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let (a, k) = (self.speed, PI / EDGE);
+        let ((sin_x, cos_x), (sin_y, cos_y)) = ((k * x).sin_cos(), (k * y).sin_cos());
+        match self.setting {
+            Setting::Box => [a * sin_x * cos_y, -a * cos_x * sin_y, 0.0],
+            Setting::Column => {
+                let a = a / (2.0 * EDGE); // velocity over height
+                let (x, y, z) = (x - 0.5 * EDGE, y - 0.5 * EDGE, z / EDGE);
+                [a * x * z, a * y * z, -a * z * z * EDGE]
+            }
+            Setting::Flight => {
+                let (turn, x, y) = (0.2 * a, x / EDGE - 0.5, y / EDGE - 0.5);
+                let [u, v, w] = [a * sin_x * cos_y, -a * cos_x * sin_y, 0.5 * a * sin_y * cos_x];
+                [u - turn * y + 0.1 * a, v + turn * x + 0.2 * a, w + 0.3 * a]
+            }
+        }
+    }
+}
+
+/// A number from -1 to 1, the same ones in every run (xorshift, G. Marsaglia, J. Stat. Softw. 8 (2003) 14).
+fn random(seed: &mut u64) -> f64 {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// A field, point after point in the order of ids.
+pub fn read_points(world: &World, body: i64, field: &str, components: usize) -> Result<Vec<f64>> {
+    let count = world.particle_count(body)?;
+    let mut values = vec![0.0; count * components];
+    let strides = Strides::new(count, components, 0, 0)?;
+    world.read_field(body, field, &mut StridedMut::new(&mut values, strides)?)?;
+    Ok(values)
+}
+
+fn write_points(world: &mut World, body: i64, field: &str, values: &[f64]) -> Result<()> {
+    let components = values.len() / world.particle_count(body)?;
+    world.write_field(body, field, &Strided::interleaved(values, components)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_column_keeps_its_volume_and_stands_still_at_the_floor() {
+        let (scene, e) = (&SCENES[1], 1e-6);
+        let at = |x: [f64; 3]| scene.velocity(x);
+        let x = [0.3, 0.8, 1.1];
+        let slope = |d: usize| {
+            let (mut low, mut high) = (x, x);
+            low[d] -= e;
+            high[d] += e;
+            (at(high)[d] - at(low)[d]) / (2.0 * e)
+        };
+        assert!((slope(0) + slope(1) + slope(2)).abs() < 1e-7);
+        assert_eq!(at([0.2, 0.9, 0.0]), [0.0; 3]);
     }
 }
