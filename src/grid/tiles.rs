@@ -7,7 +7,7 @@ use super::blocks::Neighbours;
 use super::{EDGE, Grid, Lanes, NONE, room};
 use crate::error::Result;
 use crate::particles::{refill, reserve_exact};
-use crate::simd::{Isa, Kernel, Vector};
+use crate::simd::Vector;
 
 /// What memory is for, if there is none.
 const WHAT: &str = "the tiles of the grid";
@@ -164,37 +164,21 @@ pub fn shared_rows<const D: usize>(
 }
 
 /// Copies the nodes that the particles of `block` see into a tile: R0 in the first four lanes, `second` in the others.
-pub fn load_tile<const D: usize>(
-    isa: Isa,
-    (grid, second): (&Grid<D>, &[Lanes]),
+#[inline(always)]
+pub fn load_tile<V: Vector, const D: usize>(
+    grid: &Grid<D>,
+    second: &[Lanes],
     block: u32,
     edge: usize,
     tile: &mut [TileNode],
 ) {
-    isa.dispatch(LoadTile(grid, second, &grid.forward[block as usize], edge, tile));
-}
-
-struct LoadTile<'a, const D: usize>(
-    &'a Grid<D>,
-    &'a [Lanes],
-    &'a Neighbours,
-    usize,
-    &'a mut [TileNode],
-);
-
-impl<const D: usize> Kernel for LoadTile<'_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: Vector>(self) {
-        let Self(grid, second, around, edge, tile) = self;
-        for corner in 0..1 << D {
-            let source = around[corner] as usize * EDGE.pow(D as u32);
-            for (t, b, len) in shared_rows::<D>(edge, corner) {
-                let r0 = &grid.velocity[source + b..][..len];
-                let r1 = &second[source + b..][..len];
-                for ((node, r0), r1) in tile[t..t + len].iter_mut().zip(r0).zip(r1) {
-                    V::join(r0, r1).store_node(node);
-                }
+    for corner in 0..1 << D {
+        let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
+        for (t, b, len) in shared_rows::<D>(edge, corner) {
+            let r0 = &grid.velocity[source + b..][..len];
+            let r1 = &second[source + b..][..len];
+            for ((node, r0), r1) in tile[t..t + len].iter_mut().zip(r0).zip(r1) {
+                V::join(r0, r1).store_node(node);
             }
         }
     }

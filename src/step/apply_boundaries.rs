@@ -76,9 +76,10 @@ fn for_reached_nodes<const D: usize>(
         return;
     }
     let pitch = EDGE.pow((D - 1 - wall.axis) as u32);
-    for n in 0..block_nodes(D) {
-        if reached.contains(&(n / pitch % EDGE)) {
-            visit(n);
+    for slab in (0..block_nodes(D)).step_by(EDGE * pitch) {
+        for layer in reached.clone() {
+            let first = slab + layer * pitch;
+            (first..first + pitch).for_each(&mut visit);
         }
     }
 }

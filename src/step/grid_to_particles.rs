@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 
 use crate::grid::key::EDGE;
 use crate::grid::tiles::{TileNode, load_tile};
-use crate::grid::{Grid, Key, Lanes};
+use crate::grid::{Grid, Key, Lanes, Run};
 use crate::particles::{CHUNK, ChunkMut, Motion};
 use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::simd::{Isa, Kernel, LANES, Vector, each};
@@ -28,17 +28,17 @@ pub enum Gather {
     PositionAndGradient,
 }
 
-/// Everything a gather needs beside the chunk and the tile.
+/// Everything a gather needs beside the chunk.
 #[derive(Clone, Copy, Debug)]
-pub struct GatherJob<const D: usize> {
+pub struct GatherJob<'a, const D: usize> {
     /// The instruction set.
     pub isa: Isa,
+    /// The grid.
+    pub grid: &'a Grid<D>,
     /// Origin and spacing.
     pub space: Space<D>,
-    /// The block of the run.
-    pub key: Key<D>,
-    /// First and one past the last particle, counted in the chunk.
-    pub range: (usize, usize),
+    /// The runs that the chunk touches.
+    pub runs: &'a [Run],
     /// What to update.
     pub what: Gather,
     /// The transfer scheme.
@@ -51,14 +51,14 @@ pub struct GatherJob<const D: usize> {
     pub stride: usize,
 }
 
-impl<const D: usize> GatherJob<D> {
+impl<'a, const D: usize> GatherJob<'a, D> {
     /// The record in the last four lanes of a node: affine transfers take moment and gradient of R0 at once, the others need R1
     /// (FLIP its increment, MUSL its second velocity).
-    fn second<'g>(&self, grid: &'g Grid<D>) -> &'g [Lanes] {
+    fn second(&self) -> &'a [Lanes] {
         if self.transfer.is_affine() && self.what != Gather::PositionAndGradient {
-            &grid.velocity
+            &self.grid.velocity
         } else {
-            &grid.increment
+            &self.grid.increment
         }
     }
 
@@ -69,90 +69,89 @@ impl<const D: usize> GatherJob<D> {
     }
 }
 
-/// The gather of one run of particles: job, tile, chunk, velocity gradients (9 components).
+/// The copy of the grid around a block from which its particles gather, and the slot of the block, if there is one already.
+pub type Loaded<'a> = (&'a mut [TileNode], &'a mut Option<u32>);
+
+/// The gather of a chunk: job, tile, chunk, velocity gradients (9 components).
 pub type GatherKernel<const D: usize> =
-    fn(&GatherJob<D>, &[TileNode], &mut ChunkMut<'_>, &mut [f64]);
+    fn(&GatherJob<'_, D>, Loaded<'_>, &mut ChunkMut<'_>, &mut [f64]);
 
 /// Updates the particles of a chunk from the grid and leaves their velocity gradients in the chunk's scratch.
 pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gather, dt: f64) {
-    let Piece { chunk, scratch, tile, grid, runs, .. } = piece;
-    let (first, end) = (chunk.first, chunk.first + chunk.len);
+    let Piece { chunk, scratch, tile, loaded, runs, .. } = piece;
     if D == 2 {
         scratch.velocity_gradient.fill(0.0);
     }
-    let start = runs.partition_point(|run| run.end as usize <= first);
-    for run in runs[start..].iter().take_while(|run| (run.first as usize) < end) {
-        let job = GatherJob {
-            isa: piece.isa,
-            space: piece.space,
-            key: grid.keys()[run.block as usize],
-            range: (first.max(run.first as usize) - first, end.min(run.end as usize) - first),
-            what,
-            transfer: piece.transfer,
-            pic_share: pic_flip::pic_share(piece.pic_rate, dt),
-            dt,
-            stride: scratch.stride,
-        };
-        if piece.loaded.replace(run.block) != Some(run.block) {
-            load_tile::<D>(job.isa, (grid, job.second(grid)), run.block, piece.edge, tile);
-        }
-        (piece.gather)(&job, tile, chunk, scratch.velocity_gradient);
-    }
+    let start = runs.partition_point(|run| run.end as usize <= chunk.first);
+    let job = GatherJob {
+        isa: piece.isa,
+        grid: piece.grid,
+        space: piece.space,
+        runs: &runs[start..],
+        what,
+        transfer: piece.transfer,
+        pic_share: pic_flip::pic_share(piece.pic_rate, dt),
+        dt,
+        stride: scratch.stride,
+    };
+    (piece.gather)(&job, (tile, loaded), chunk, scratch.velocity_gradient);
     piece.lap(ChunkStage::Gathered);
 }
 
-/// Kernel of a run.
-pub fn gather_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    job: &GatherJob<D>,
-    tile: &[TileNode],
+/// Kernel of the gather.
+pub fn gather_chunk<S: ShapeFunction<N>, const N: usize, const D: usize>(
+    job: &GatherJob<'_, D>,
+    loaded: Loaded<'_>,
     chunk: &mut ChunkMut<'_>,
     gradient: &mut [f64],
 ) {
-    job.isa.dispatch(GatherRun::<S, N, D>(job, tile, chunk, gradient, PhantomData));
+    job.isa.dispatch(GatherChunk::<S, N, D>(job, loaded, chunk, gradient, PhantomData));
 }
 
-struct GatherRun<'a, 'c, S, const N: usize, const D: usize>(
-    &'a GatherJob<D>,
-    &'a [TileNode],
+struct GatherChunk<'a, 'c, S, const N: usize, const D: usize>(
+    &'a GatherJob<'a, D>,
+    Loaded<'a>,
     &'a mut ChunkMut<'c>,
     &'a mut [f64],
     PhantomData<S>,
 );
 
-impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherRun<'_, '_, S, N, D> {
+impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherChunk<'_, '_, S, N, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(job, tile, chunk, gradient, _) = self;
-        let (first, end) = job.range;
-        let mut marks = [0; CHUNK / LANES];
-        {
-            let mut motion = chunk.motion::<D>(job.range);
-            let mut gradient = rows_of_gradient(gradient, job.stride, job.range);
-            let mut batch = Batch::<N, D>::new();
-            let mut taken = Taken::new();
-            for start in (0..end - first).step_by(BATCH) {
-                let count = BATCH.min(end - first - start);
-                batch.set::<V, S>(job, &motion, start, count);
+        let Self(job, (tile, loaded), chunk, gradient, _) = self;
+        let mut batch = Batch::<N, D>::new();
+        let mut taken = Taken::new();
+        let (first, end) = (chunk.first, chunk.first + chunk.len);
+        for run in job.runs.iter().take_while(|run| (run.first as usize) < end) {
+            if loaded.replace(run.block) != Some(run.block) {
+                load_tile::<V, D>(job.grid, job.second(), run.block, EDGE + N - 1, tile);
+            }
+            let key = job.grid.keys()[run.block as usize];
+            let range = (first.max(run.first as usize) - first, end.min(run.end as usize) - first);
+            let mut marks = [0; CHUNK / LANES];
+            let mut motion = chunk.motion::<D>(range);
+            let mut gradient = rows_of_gradient(gradient, job.stride, range);
+            for start in (0..range.1 - range.0).step_by(BATCH) {
+                let count = BATCH.min(range.1 - range.0 - start);
+                batch.set::<V, S>(job, &motion, key, (start, count));
                 batch.take(tile, count, &mut taken);
                 for k in (start..start + count).step_by(LANES) {
                     let received = taken.received(job, (k - start) / LANES);
                     let end = (start + count).min(k + LANES);
-                    let mark = &mut marks[k / LANES];
-                    if end == k + LANES {
-                        let range = (k, k + LANES); // of known length
-                        *mark =
-                            keep::<V, S, N, D>(job, &received, &mut motion, &mut gradient, range);
+                    let kept = (&mut motion, &mut gradient);
+                    marks[k / LANES] = if end == k + LANES {
+                        // of known length
+                        keep::<V, S, N, D>(job, key, &received, kept, (k, k + LANES))
                     } else {
-                        let range = (k, end);
-                        *mark =
-                            keep::<V, S, N, D>(job, &received, &mut motion, &mut gradient, range);
-                    }
+                        keep::<V, S, N, D>(job, key, &received, kept, (k, end))
+                    };
                 }
             }
-        }
-        for (n, mark) in marks.iter().take((end - first).div_ceil(LANES)).enumerate() {
-            chunk.mark_moved(first + n * LANES, *mark);
+            for (n, mark) in marks.iter().take((range.1 - range.0).div_ceil(LANES)).enumerate() {
+                chunk.mark_moved(range.0 + n * LANES, *mark);
+            }
         }
     }
 }
@@ -188,10 +187,10 @@ impl<const N: usize, const D: usize> Batch<N, D> {
     #[inline(always)]
     fn set<V: Vector, S: ShapeFunction<N>>(
         &mut self,
-        job: &GatherJob<D>,
+        job: &GatherJob<'_, D>,
         motion: &Motion<'_, D>,
-        start: usize,
-        count: usize,
+        key: Key<D>,
+        (start, count): (usize, usize),
     ) {
         for g in 0..count.div_ceil(LANES) {
             let k = start + g * LANES;
@@ -200,7 +199,7 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             let x: [V; D] = each!(d in D => V::load(&motion.position[d][k..end]));
             let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
             self.weights[g].set(&stencil, job.transfer.is_affine());
-            self.corners[g] = corners(&stencil, job.key);
+            self.corners[g] = corners(&stencil, key);
         }
     }
 
@@ -234,7 +233,7 @@ impl<V: Vector, const D: usize> Taken<V, D> {
 
     /// The same for the eight particles of a group: a vector holds one component.
     #[inline(always)]
-    fn received(&self, job: &GatherJob<D>, g: usize) -> Received<V, D> {
+    fn received(&self, job: &GatherJob<'_, D>, g: usize) -> Received<V, D> {
         let sums = V::transpose(self.sums[g]);
         let mut slopes = self.slopes[g];
         for d in 0..D {
@@ -254,10 +253,10 @@ impl<V: Vector, const D: usize> Taken<V, D> {
 /// Updates the particles of a range from what they took. Gives a bit for each that left its block.
 #[inline(always)]
 fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
-    job: &GatherJob<D>,
+    job: &GatherJob<'_, D>,
+    key: Key<D>,
     received: &Received<V, D>,
-    motion: &mut Motion<'_, D>,
-    gradient: &mut [[&mut [f64]; D]; D],
+    (motion, gradient): (&mut Motion<'_, D>, &mut [[&mut [f64]; D]; D]),
     (k, end): (usize, usize),
 ) -> u8 {
     if job.what != Gather::PositionAndGradient {
@@ -289,17 +288,22 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
             received.gradient[a][b].store(&mut gradient[a][b][k..end]);
         }
     }
-    outside(job, x, end - k)
+    outside(job, key, x, end - k)
 }
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.
 #[inline(always)]
-fn outside<V: Vector, const D: usize>(job: &GatherJob<D>, x: [V; D], count: usize) -> u8 {
+fn outside<V: Vector, const D: usize>(
+    job: &GatherJob<'_, D>,
+    key: Key<D>,
+    x: [V; D],
+    count: usize,
+) -> u8 {
     let xi = job.space.to_units(x);
     let mut inside = u8::MAX;
     for d in 0..D {
         let place = xi[d] - V::splat(job.space.first_offset);
-        let lowest = f64::from(job.key[d]) * EDGE as f64;
+        let lowest = f64::from(key[d]) * EDGE as f64;
         let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
         inside &= !place.less_than(low) & place.less_than(high);
     }

@@ -20,26 +20,28 @@ use crate::particles::Particles;
 use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
-use crate::world::state::{Space, State};
+use crate::world::state::{Body, Space, State};
 
-/// What a scatter of one run of particles needs beside the tile.
+/// What a scatter needs beside the tiles that it fills.
 #[derive(Clone, Copy)]
 pub struct ScatterJob<'a, const D: usize> {
     /// The instruction set.
     pub isa: Isa,
-    /// The particles of the body.
-    pub particles: &'a Particles,
+    /// The bodies.
+    pub bodies: &'a [Body],
+    /// Keys of the blocks, by slot.
+    pub keys: &'a [Key<D>],
     /// Origin and spacing.
     pub space: &'a Space<D>,
-    /// The block of the run.
-    pub key: Key<D>,
-    /// The run.
-    pub run: Run,
+    /// All runs.
+    pub runs: &'a [Run],
+    /// For each tile to fill its runs, as a range of `runs`.
+    pub tiles: &'a [(u32, u32)],
     /// Whether the stresses give forces.
     pub forces: bool,
 }
 
-/// The scatter of one run of particles into a tile of its block.
+/// The scatter of all particles of some tiles that stand one after the other.
 pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 
 /// Maps mass, momentum and the forces of the stresses to the grid.
@@ -79,39 +81,36 @@ fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
     let (space, kernel) = (world.space(), world.kernels.scatter);
     let State { bodies, grid, tiles, context, .. } = world;
     let nodes = tiles.tile_nodes(D);
-    let fill = |tile: &mut [TileNode], t: usize| {
-        tile.fill(TileNode::default());
-        let (first, end) = tiles.tiles[t];
-        for run in &tiles.runs[first as usize..end as usize] {
-            let job = ScatterJob {
-                isa: context.isa(),
-                particles: &bodies[run.body as usize].particles,
-                space: &space,
-                key: grid.keys()[run.block as usize],
-                run: *run,
-                forces,
-            };
-            kernel(&job, tile);
-        }
+    let fill = |part: &mut [TileNode], first: usize| {
+        let job = ScatterJob {
+            isa: context.isa(),
+            bodies,
+            keys: grid.keys(),
+            space: &space,
+            runs: &tiles.runs,
+            tiles: &tiles.tiles[first..first + part.len() / nodes],
+            forces,
+        };
+        kernel(&job, part);
     };
     let all = &mut tiles.nodes[..nodes * tiles.tiles.len()];
     if world.parallel {
-        let work = |tile: &mut [TileNode], t: usize| {
+        let work = |part: &mut [TileNode], first: usize| {
             context.mark_worker();
-            fill(tile, t);
+            fill(part, first);
         };
-        for_each_tile(all, (nodes, 0), &tiles.start, &work);
+        split_tiles(all, (nodes, 0), &tiles.start, &work);
     } else {
-        all.chunks_mut(nodes).enumerate().for_each(|(t, tile)| fill(tile, t));
+        fill(all, 0);
     }
 }
 
 /// Particles that one thread takes at least.
-const GRAIN: u32 = 2048;
+const GRAIN: u32 = 4096;
 
-/// Calls `work` with every tile and its number, in parallel. The work is split in halves by particles, `start` being their running
-/// count, so that a thin layer and a dense heap balance.
-fn for_each_tile(
+/// Calls `work` with parts of the tiles and the number of the first of each, in parallel. The tiles are split in halves by particles,
+/// `start` being their running count, so that a thin layer and a dense heap balance.
+fn split_tiles(
     tiles: &mut [TileNode],
     (nodes, first): (usize, usize),
     start: &[u32],
@@ -120,7 +119,7 @@ fn for_each_tile(
     let count = tiles.len() / nodes;
     let (low, high) = (start[first], start[first + count]);
     if count < 2 || high - low <= GRAIN {
-        tiles.chunks_mut(nodes).enumerate().for_each(|(t, tile)| work(tile, first + t));
+        work(tiles, first);
         return;
     }
     let middle = low + (high - low) / 2;
@@ -128,8 +127,8 @@ fn for_each_tile(
     let half = half.min(count - 1);
     let (left, right) = tiles.split_at_mut(half * nodes);
     rayon::join(
-        || for_each_tile(left, (nodes, first), start, work),
-        || for_each_tile(right, (nodes, first + half), start, work),
+        || split_tiles(left, (nodes, first), start, work),
+        || split_tiles(right, (nodes, first + half), start, work),
     );
 }
 
@@ -330,38 +329,40 @@ pub const fn span(nodes: usize, dimension: usize) -> usize {
     (nodes - 1) * (rows * edge + 1) + 1
 }
 
-/// Kernel of a run.
-pub fn scatter_run<S: ShapeFunction<N>, const N: usize, const D: usize>(
+/// Kernel of the scatter.
+pub fn scatter_tiles<S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &ScatterJob<'_, D>,
-    tile: &mut [TileNode],
+    tiles: &mut [TileNode],
 ) {
-    job.isa.dispatch(ScatterRun::<S, N, D>(job, tile, PhantomData));
+    job.isa.dispatch(ScatterTiles::<S, N, D>(job, tiles, PhantomData));
 }
 
-struct ScatterRun<'a, S, const N: usize, const D: usize>(
+struct ScatterTiles<'a, S, const N: usize, const D: usize>(
     &'a ScatterJob<'a, D>,
     &'a mut [TileNode],
     PhantomData<S>,
 );
 
-impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterRun<'_, S, N, D> {
+impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterTiles<'_, S, N, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(job, tile, _) = self;
-        let columns = Columns::<D>::new(job);
-        let all = (job.run.end - job.run.first) as usize;
+        let Self(job, tiles, _) = self;
+        let nodes = (EDGE + N - 1).pow(D as u32);
         let mut batch = Batch::<V, N, D>::new();
-        for start in (0..all).step_by(BATCH) {
-            let count = BATCH.min(all - start);
-            for g in 0..count.div_ceil(LANES) {
-                batch.set::<S>(g, job, &columns, start + g * LANES);
-            }
-            for p in 0..count {
-                let (g, l) = (p / LANES, p % LANES);
-                let nodes = &mut tile[batch.corners[g][l] as usize..][..span(N, D)];
-                let (value, columns) = (batch.values[g][l], &batch.columns[g]);
-                add(nodes, &batch.weights[g].axes(l), value, each!(d in D => columns[d][l]));
+        for (tile, (first, end)) in tiles.chunks_exact_mut(nodes).zip(job.tiles) {
+            tile.fill(TileNode::default());
+            for run in &job.runs[*first as usize..*end as usize] {
+                let particles = &job.bodies[run.body as usize].particles;
+                let (columns, key) = (Columns::new(particles, run), job.keys[run.block as usize]);
+                let all = (run.end - run.first) as usize;
+                for start in (0..all).step_by(BATCH) {
+                    let count = BATCH.min(all - start);
+                    for g in 0..count.div_ceil(LANES) {
+                        batch.set::<S>(g, job, (&columns, key), start + g * LANES);
+                    }
+                    batch.add(tile, count);
+                }
             }
         }
     }
@@ -393,21 +394,32 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
         }
     }
 
-    /// Sets group g: the particles from k on.
+    /// Sets group g: the particles from k on of a run in the block `key`.
     #[inline(always)]
     fn set<S: ShapeFunction<N>>(
         &mut self,
         g: usize,
         job: &ScatterJob<'_, D>,
-        columns: &Columns<'_, D>,
+        (columns, key): (&Columns<'_, D>, Key<D>),
         k: usize,
     ) {
         columns.prefetch(k + AHEAD);
         let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
         let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
         self.weights[g].set(&stencil, true);
-        self.corners[g] = corners(&stencil, job.key);
+        self.corners[g] = corners(&stencil, key);
         (self.values[g], self.columns[g]) = payload(job, columns, k);
+    }
+
+    /// Adds what the first `count` particles give to the tile.
+    #[inline(always)]
+    fn add(&self, tile: &mut [TileNode], count: usize) {
+        for p in 0..count {
+            let (g, l) = (p / LANES, p % LANES);
+            let nodes = &mut tile[self.corners[g][l] as usize..][..span(N, D)];
+            let columns = each!(d in D => self.columns[g][d][l]);
+            add(nodes, &self.weights[g].axes(l), self.values[g][l], columns);
+        }
     }
 }
 
@@ -425,9 +437,9 @@ struct Columns<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Columns<'a, D> {
-    fn new(job: &ScatterJob<'a, D>) -> Self {
-        let (particles, layout) = (job.particles, &job.particles.layout);
-        let (first, end) = (job.run.first as usize, job.run.end as usize);
+    fn new(particles: &'a Particles, run: &Run) -> Self {
+        let layout = &particles.layout;
+        let (first, end) = (run.first as usize, run.end as usize);
         let row = |a: usize| particles.read(layout.affine + a * D, first, end);
         let affine = layout.deformation_gradient > layout.affine;
         Self {

@@ -5,8 +5,8 @@ use crate::shape::ShapeKind;
 use crate::shape::linear::Linear;
 use crate::shape::quadratic_bspline::QuadraticBspline;
 use crate::shape::stencil::ShapeFunction;
-use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_run};
-use crate::step::particles_to_grid::{Scatter, scatter_run};
+use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_chunk};
+use crate::step::particles_to_grid::{Scatter, scatter_tiles};
 
 /// Calls the visitor with number and weight of every node of the stencil at ξ; false if a node's block is not active.
 pub type NodesAt<const D: usize> = fn(&Grid<D>, [f64; D], &mut dyn FnMut(usize, f64)) -> bool;
@@ -35,8 +35,8 @@ impl<const D: usize> Kernels<D> {
 
     fn of<S: ShapeFunction<N>, const N: usize>() -> Self {
         Self {
-            scatter: scatter_run::<S, N, D>,
-            gather: gather_run::<S, N, D>,
+            scatter: scatter_tiles::<S, N, D>,
+            gather: gather_chunk::<S, N, D>,
             nodes_at: for_stencil_nodes::<S, N, D>,
             moment: |xi| {
                 let axis = S::axis::<f64>(xi);

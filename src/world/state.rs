@@ -219,7 +219,7 @@ impl<const D: usize> State<D> {
         &mut self,
         work: impl Fn(&mut Piece<'_, '_, D>) -> Outcome + Sync,
     ) -> Outcome {
-        let (space, edge) = (self.space(), self.tiles.edge);
+        let space = self.space();
         let tile_nodes = self.tiles.tile_nodes(D);
         let Self { bodies, grid, options, kernels, context, time, parallel, stopwatch, .. } = self;
         let mut outcome = Outcome::default();
@@ -245,7 +245,6 @@ impl<const D: usize> State<D> {
                             grid,
                             isa: context.isa(),
                             space,
-                            edge,
                             gather: kernels.gather,
                             transfer: options.transfer,
                             pic_rate: options.pic_rate,
@@ -306,8 +305,6 @@ pub struct Piece<'c, 's, const D: usize> {
     pub isa: Isa,
     /// Origin and spacing.
     pub space: Space<D>,
-    /// Nodes along the edge of a tile.
-    pub edge: usize,
     /// The gather of the shape function.
     pub gather: GatherKernel<D>,
     /// The transfer scheme.
