@@ -193,7 +193,7 @@ typedef struct lahar_state_desc {
     double initial;
 } lahar_state_desc;
 
-// A run of points. All arrays are 64-byte aligned, share `stride` (`n` rounded up to 8) and do not alias each other.
+// A run of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least `n`) and do not alias each other.
 typedef struct lahar_stress_batch {
     // Size of this struct in bytes, as the engine knows it.
     uint32_t struct_size;

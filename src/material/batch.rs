@@ -3,7 +3,7 @@
 /// Safe picture of `lahar_stress_batch`: one call for `n` points.
 ///
 /// Component `c` of point `k` stands at `array[c * stride + k]`, so that an array of `C` components has `C * stride`
-/// elements; `stride` is `n` rounded up to a multiple of 8 and bases are 64-byte aligned. An empty slice stands for
+/// elements; `stride` is a multiple of 8 and at least `n`, and bases are 64-byte aligned. An empty slice stands for
 /// an array that was not asked for. Symmetric tensors are xx, yy, zz, xy, yz, zx, gradients row-major, tension positive.
 pub struct StressBatch<'a> {
     /// Number of points.

@@ -77,14 +77,9 @@ fn no_memory<T>(more: usize, what: &str) -> Error {
     )
 }
 
-/// Rounds a number of points up to whole groups of 8.
-pub const fn padded(n: usize) -> usize {
-    n.next_multiple_of(LANES)
-}
-
 /// Distance between the columns of `n` particles: whole groups of 8, and an odd number of them, so that the columns of a power of two of
 /// particles do not fall into the same sets of the cache.
-const fn stride_of(n: usize) -> usize {
+pub const fn stride_of(n: usize) -> usize {
     (n.div_ceil(LANES) | 1) * LANES
 }
 

@@ -6,7 +6,7 @@ use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_O
 
 use crate::grid::TileNode;
 use crate::material::{Input, Kinematics, Material, StressBatch};
-use crate::particles::{Aligned, CHUNK, padded};
+use crate::particles::{Aligned, CHUNK, stride_of};
 
 /// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
 pub struct Scratch<'a> {
@@ -132,7 +132,7 @@ impl Points {
     /// The scratch for `n` points of a material.
     pub fn scratch(&mut self, material: &Material, n: usize) -> Scratch<'_> {
         let model = material.model();
-        let stride = padded(n);
+        let stride = stride_of(n);
         let state = model.state_components();
         let wants = |input| usize::from(model.inputs.contains(&input));
         let gives = |output| usize::from(model.outputs & output != 0);

@@ -161,7 +161,7 @@ pub struct lahar_state_desc {
     pub initial: f64,
 }
 
-/// A run of points. All arrays are 64-byte aligned, share `stride` (`n` rounded up to 8) and do not alias each other.
+/// A run of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least `n`) and do not alias each other.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_stress_batch {
