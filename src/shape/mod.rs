@@ -1,10 +1,11 @@
 //! Shape functions: how a particle is spread over nodes.
 //!
-//! A shape function is one function of one axis; the tensor product is written once, in [`stencil`].
+//! A shape function is one function of one axis; the tensor product is written once, in [`weights`].
 
 pub mod linear;
 pub mod quadratic_bspline;
 pub mod stencil;
+pub mod weights;
 
 use crate::error::{Error, Result};
 

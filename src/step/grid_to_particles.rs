@@ -1,7 +1,7 @@
 //! Stage 5, grid to particles: v_p from the transfer scheme, x_p += dt Σ w v, ∇v_p = Σ v ⊗ ∇w.
 //!
 //! The mirror image of the scatter: a node has eight lanes, two of its records, and with the weights w_n and the pairs c_n of an axis (see
-//! [`particles_to_grid`](mod@super::particles_to_grid)) one pass over rows, planes and stencil gives Σ w R of both and, along each axis,
+//! [`weights`](crate::shape::weights)) one pass over rows, planes and stencil gives Σ w R of both and, along each axis,
 //! Σ r w or Σ ∂w of each. Which record stands where is told by [`GatherJob::second`] and [`GatherJob::gradient_lane`].
 //! Cost per particle, quadratic in 3D: 62 products and 36 sums of eight lanes, 27 nodes read, 3 doubles read and 24 written.
 
@@ -12,8 +12,8 @@ use crate::grid::tiles::{TileNode, load_tile};
 use crate::grid::{Grid, Key, Lanes, Run};
 use crate::particles::{CHUNK, ChunkMut, Motion};
 use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each};
-use crate::step::particles_to_grid::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
 
@@ -157,11 +157,11 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherChunk
 }
 
 /// The rows of the velocity gradient of the particles in a range.
-fn rows_of_gradient<'a, const D: usize>(
-    gradient: &'a mut [f64],
+fn rows_of_gradient<const D: usize>(
+    gradient: &mut [f64],
     stride: usize,
     (first, end): (usize, usize),
-) -> [[&'a mut [f64]; D]; D] {
+) -> [[&mut [f64]; D]; D] {
     let mut rows = gradient.chunks_exact_mut(3 * stride);
     std::array::from_fn(|_| {
         let mut row = rows.next().unwrap_or_default().chunks_exact_mut(stride);
