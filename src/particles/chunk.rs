@@ -4,10 +4,10 @@ use super::Layout;
 use crate::simd::prefetch;
 
 /// Particles in a chunk: its columns and its scratch fit the second-level cache.
-pub const CHUNK: usize = 256;
+pub const CHUNK: usize = 512;
 
 /// Particles in a task, a number of chunks that one thread works through.
-const TASK: usize = 4 * CHUNK;
+const TASK: usize = 2 * CHUNK;
 
 /// Most components that a body can have: those of the engine and 128 of a model's state.
 pub const MAX_COMPONENTS: usize = 168;
