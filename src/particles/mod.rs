@@ -15,9 +15,15 @@ pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, Status};
-use crate::simd::LANES;
+use crate::simd::{LANES, prefetch};
 
 const ALIGN: usize = 64;
+
+/// Segments that the memory is asked for ahead of the one that moves.
+const AHEAD: usize = 8;
+
+/// Particles of a segment that the memory is asked for ahead; more follow by themselves.
+const FETCHED: u32 = 512;
 
 /// A buffer of doubles whose first element is 64-byte aligned.
 #[derive(Debug, Default)]
@@ -231,7 +237,13 @@ fn move_all<T: Copy>(
     for (piece, from) in scratch.iter_mut().zip(from) {
         *piece = pack(column[*from as usize]);
     }
-    for Segment { from, to, len } in segments {
+    for (s, Segment { from, to, len }) in segments.iter().enumerate() {
+        if let Some(next) = segments.get(s + AHEAD) {
+            for k in (0..next.len.min(FETCHED)).step_by(LANES) {
+                prefetch(column, (next.from + k) as usize);
+                prefetch(column, (next.to + k) as usize);
+            }
+        }
         column.copy_within(*from as usize..(from + len) as usize, *to as usize);
     }
     for (to, piece) in to.iter().zip(scratch) {
