@@ -4,7 +4,8 @@
 //! nothing is done. Else a [`Plan`] says which runs there will be and which particles change places for that:
 //!
 //! * [`movers`]: only those that left their block, and those that must make room. The order inside a block becomes stale.
-//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when half of them left their block.
+//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when more than half left their
+//!   block.
 //!
 //! A plan is made without a change to the world, so that particles outside the grid are an error that changes nothing. Both
 //! ways depend on positions and on the order of particles alone, not on slots of the grid, its policy or threads.

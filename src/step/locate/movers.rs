@@ -1,7 +1,7 @@
 //! The plan that moves only particles that left their block, and those that stand in the way.
 //!
 //! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
-//! particles at the one end go to the other, since the order inside a run is free.
+//! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
 
 use super::{Plan, SORTING, place_inside};
 use crate::error::Result;
