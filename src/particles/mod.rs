@@ -10,14 +10,20 @@ pub mod seeding;
 
 pub use chunk::{CHUNK, ChunkMut, Motion, for_each_task};
 pub use fields::{FieldInfo, Layout};
-pub use moves::Moves;
+pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, Status};
-use crate::simd::LANES;
+use crate::simd::{LANES, prefetch};
 
 const ALIGN: usize = 64;
+
+/// Segments that the memory is asked for ahead of the one that moves.
+const AHEAD: usize = 8;
+
+/// Particles of a segment that the memory is asked for ahead; more follow by themselves.
+const FETCHED: u32 = 512;
 
 /// A buffer of doubles whose first element is 64-byte aligned.
 #[derive(Debug, Default)]
@@ -182,34 +188,29 @@ impl Particles {
         (std::array::from_fn(column), &mut self.moved)
     }
 
-    /// Puts particle `from[i]` at place `to[i]` for all i at once; the same places stand in both lists. With `parallel` several
-    /// columns move at a time.
-    pub fn rearrange(&mut self, from: &[u32], to: &[u32], parallel: bool) {
-        let (stride, moves) = (self.stride, from.len());
-        if moves == 0 {
+    /// Carries out moves of particles. With `parallel` several columns move at a time.
+    pub fn rearrange(&mut self, moves: Part<'_>, parallel: bool) {
+        let (stride, single) = (self.stride, moves.from.len().max(1));
+        if moves.from.is_empty() && moves.segments.is_empty() {
             return;
         }
         let scratch = self.scratch.as_mut_slice();
         let data = self.data.as_mut_slice();
         let columns = data.len() / stride;
-        let at_a_time = if parallel { columns.min(stride / moves) } else { 1 };
+        let at_a_time = if parallel { columns.min(stride / single) } else { 1 };
         let group = stride * columns.div_ceil(at_a_time);
         let work = |(columns, scratch): (&mut [f64], &mut [f64])| {
             for column in columns.chunks_exact_mut(stride) {
-                move_all(column, scratch, (from, to));
+                move_all(column, scratch, moves, |x| x, |x| x);
             }
         };
         if at_a_time > 1 {
-            data.par_chunks_mut(group).zip(scratch.par_chunks_mut(moves)).for_each(work);
+            data.par_chunks_mut(group).zip(scratch.par_chunks_mut(single)).for_each(work);
         } else {
-            work((data, &mut scratch[..moves]));
+            work((data, &mut scratch[..single]));
         }
-        for (piece, from) in scratch.iter_mut().zip(from) {
-            *piece = f64::from_bits(self.id[*from as usize] as u64);
-        }
-        for (to, piece) in to.iter().zip(scratch) {
-            self.id[*to as usize] = piece.to_bits() as i64;
-        }
+        let (pack, unpack) = (|id| f64::from_bits(id as u64), |x: f64| x.to_bits() as i64);
+        move_all(&mut self.id, scratch, moves, pack, unpack);
     }
 
     /// Memory of the columns [bytes].
@@ -219,12 +220,28 @@ impl Particles {
     }
 }
 
-/// Puts element `from[i]` at place `to[i]` for all i at once.
-fn move_all(column: &mut [f64], scratch: &mut [f64], (from, to): (&[u32], &[u32])) {
+/// Carries out the moves of one column, whose elements are packed into doubles for a while.
+#[inline(always)]
+fn move_all<T: Copy>(
+    column: &mut [T],
+    scratch: &mut [f64],
+    Part { from, to, segments }: Part<'_>,
+    pack: impl Fn(T) -> f64,
+    unpack: impl Fn(f64) -> T,
+) {
     for (piece, from) in scratch.iter_mut().zip(from) {
-        *piece = column[*from as usize];
+        *piece = pack(column[*from as usize]);
+    }
+    for (s, Segment { from, to, len }) in segments.iter().enumerate() {
+        if let Some(next) = segments.get(s + AHEAD) {
+            for k in (0..next.len.min(FETCHED)).step_by(LANES) {
+                prefetch(column, (next.from + k) as usize);
+                prefetch(column, (next.to + k) as usize);
+            }
+        }
+        column.copy_within(*from as usize..(from + len) as usize, *to as usize);
     }
     for (to, piece) in to.iter().zip(scratch) {
-        column[*to as usize] = *piece;
+        column[*to as usize] = unpack(*piece);
     }
 }

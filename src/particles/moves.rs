@@ -2,13 +2,48 @@
 
 use std::ops::Range;
 
-/// Particles that change places: the one at `from[i]` goes to `to[i]`, all at once.
+use super::reserve;
+use crate::error::Result;
+
+/// Neighbours that move together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Place of the first one before.
+    pub from: u32,
+    /// Place of the first one after.
+    pub to: u32,
+    /// How many they are.
+    pub len: u32,
+}
+
+/// Particles that change places. First the single ones are taken out; then the segments go to their new places one after the other,
+/// each onto places from which all who are still needed have gone; then the single ones are put in.
 #[derive(Debug, Default)]
 pub struct Moves {
-    /// Places before.
+    /// Places of the single particles before.
     pub from: Vec<u32>,
-    /// Places after: the same as in `from`, in another order.
+    /// Their places after.
     pub to: Vec<u32>,
+    /// The particles that move together, in the order in which they can.
+    pub segments: Vec<Segment>,
+}
+
+/// Lengths of the lists of moves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mark {
+    single: usize,
+    segments: usize,
+}
+
+/// A part of the lists of moves: those of one body.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Places of the single particles before.
+    pub from: &'a [u32],
+    /// Their places after.
+    pub to: &'a [u32],
+    /// The particles that move together.
+    pub segments: &'a [Segment],
 }
 
 impl Moves {
@@ -16,6 +51,31 @@ impl Moves {
     pub fn clear(&mut self) {
         self.from.clear();
         self.to.clear();
+        self.segments.clear();
+    }
+
+    /// Where the lists end now.
+    pub fn mark(&self) -> Mark {
+        Mark { single: self.from.len(), segments: self.segments.len() }
+    }
+
+    /// The moves between two ends.
+    pub fn between(&self, start: Mark, end: Mark) -> Part<'_> {
+        let single = start.single..end.single;
+        Part {
+            from: &self.from[single.clone()],
+            to: &self.to[single],
+            segments: &self.segments[start.segments..end.segments],
+        }
+    }
+
+    /// Makes room for the segments of `runs` runs that `leavers` particles leave; if that takes more memory, for twice as many.
+    pub fn reserve_segments(&mut self, runs: usize, leavers: usize, what: &str) -> Result<()> {
+        let more = 2 * runs + leavers;
+        if self.segments.capacity() - self.segments.len() >= more {
+            return Ok(());
+        }
+        reserve(&mut self.segments, 2 * more, what)
     }
 
     /// Adds the moves that sort a body; `order[k]` is the particle that belongs at place k.
@@ -29,75 +89,195 @@ impl Moves {
     }
 
     /// Adds the moves of a run of particles that had the places `old` and gets the places `new`. Some leave it (`leavers`, ascending),
-    /// others arrive. Who stays and stands in `new` already does not move; who stays and does not, and then the arrivals,
-    /// go to the free places of `new` in ascending order.
-    pub fn refill(
-        &mut self,
-        old: Range<u32>,
-        new: Range<u32>,
-        leavers: impl Iterator<Item = u32> + Clone,
-        arrivals: &[u32],
-    ) {
-        let inside = |range: Range<u32>| leavers.clone().filter(move |k| range.contains(k));
-        self.to.extend(new.start..new.end.min(old.start));
-        self.to.extend(inside(new.clone()));
-        self.to.extend(new.start.max(old.end)..new.end);
+    /// others arrive, and who stays and stands in `new` does not move. Who stays and does not goes to the places of `new` that
+    /// are not in `old`, together with the holes that the leavers make; only if there are fewer places, holes are cut out, and
+    /// when there is none any more, the last go singly into holes elsewhere. The arrivals get the holes and places that are
+    /// left.
+    pub fn refill(&mut self, old: Range<u32>, new: Range<u32>, leavers: &[u32], arrivals: &[u32]) {
+        if new.is_empty() {
+            return;
+        }
+        let mut holes = inside(leavers, old.start.max(new.start)..old.end.min(new.end));
+        // a run that grows at both ends is the only one with two rooms, and none of its particles needs one
+        let rooms = [new.start..new.end.min(old.start), new.start.max(old.end)..new.end];
+        let [mut room, spare] = if rooms[0].is_empty() { [rooms[1].clone(), 0..0] } else { rooms };
+        let mut surplus = old.len().saturating_sub(new.len());
         for part in [old.start..old.end.min(new.start), old.start.max(new.end)..old.end] {
+            let leavers = inside(leavers, part.clone());
+            let (cut, along) = leavers.split_at(surplus.min(leavers.len()));
+            surplus -= cut.len();
             let mut next = part.start;
-            for leaver in inside(part.clone()) {
-                self.from.extend(next..leaver);
+            for leaver in cut {
+                self.carry(next..*leaver, &mut room, &mut holes);
                 next = leaver + 1;
             }
-            self.from.extend(next..part.end);
+            self.to.extend(along.iter().map(|leaver| leaver - next + room.start));
+            self.carry(next..part.end, &mut room, &mut holes);
         }
+        self.to.extend(holes);
+        self.to.extend(room);
+        self.to.extend(spare);
         self.from.extend_from_slice(arrivals);
         debug_assert_eq!(self.from.len(), self.to.len());
     }
+
+    /// Carries neighbours into a room as far as it reaches, and the rest of them into holes.
+    fn carry(&mut self, piece: Range<u32>, room: &mut Range<u32>, holes: &mut &[u32]) {
+        let whole = piece.len().min(room.len()) as u32;
+        if whole > 0 {
+            self.segments.push(Segment { from: piece.start, to: room.start, len: whole });
+            room.start += whole;
+        }
+        let rest = piece.start + whole..piece.end;
+        let (taken, left) = holes.split_at(rest.len());
+        *holes = left;
+        self.segments.extend(rest.zip(taken).map(|(from, to)| Segment { from, to: *to, len: 1 }));
+    }
+}
+
+/// Those of an ascending list that are in a range; one that ends before it starts has none.
+fn inside(list: &[u32], range: Range<u32>) -> &[u32] {
+    let start = list.partition_point(|k| *k < range.start);
+    let count = list[start..].partition_point(|k| *k < range.end);
+    &list[start..start + count]
+}
+
+/// An old and a new row of the same runs; each list holds where the runs start, and at last where the row ends. Says in which order the
+/// runs can be refilled, so that none gets particles onto places of another that still has to move its own: where ends of runs
+/// in a row move up, from the last of these runs to the first, elsewhere from the first to the last.
+pub fn in_order(spans: &[Span], mut refill: impl FnMut(usize)) {
+    let mut first = 0;
+    while first + 1 < spans.len() {
+        let mut last = first;
+        while spans[last + 1].new > spans[last + 1].old {
+            last += 1;
+        }
+        (first..=last).rev().for_each(&mut refill);
+        first = last + 1;
+    }
+}
+
+/// Where a run starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Its first place before; that of the next run if it was empty.
+    pub old: u32,
+    /// Its first place after; that of the next run if it is empty.
+    pub new: u32,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Moves letters from one row of runs to another; the letter tells the run in which it belongs.
-    fn regrouped(before: &[&str], numbers: &[u8]) -> String {
-        let mut line: Vec<u8> = before.concat().into_bytes();
-        let all = line.clone();
-        let at = |b: usize| before[..b].iter().map(|run| run.len()).sum::<usize>() as u32;
+    /// Carries out the moves on a row of letters.
+    fn moved<T: Copy>(mut row: Vec<T>, moves: &Moves) -> Vec<T> {
+        let single: Vec<T> = moves.from.iter().map(|from| row[*from as usize]).collect();
+        for Segment { from, to, len } in &moves.segments {
+            row.copy_within(*from as usize..(from + len) as usize, *to as usize);
+        }
+        for (to, piece) in moves.to.iter().zip(single) {
+            row[*to as usize] = piece;
+        }
+        row
+    }
+
+    /// The moves between rows of runs that follow each other as `runs` does. `target` names the run in which each particle belongs;
+    /// of the runs `old` tells the lengths before.
+    fn regroup(runs: &[u8], old: &[u32], target: &[u8]) -> Moves {
+        let (mut spans, mut at) = (Vec::new(), Span { old: 0, new: 0 });
+        for (name, old) in runs.iter().zip(old) {
+            spans.push(at);
+            at.old += old;
+            at.new += target.iter().filter(|t| *t == name).count() as u32;
+        }
+        spans.push(at);
         let mut moves = Moves::default();
-        let mut first = 0;
-        for letter in numbers {
-            let count = all.iter().filter(|l| *l == letter).count() as u32;
-            let b = usize::from(letter - b'a');
-            let old = if b < before.len() { at(b)..at(b + 1) } else { first..first };
-            let others = old.clone().filter(|k| all[*k as usize] != *letter);
-            let outside = |k: &u32| !old.contains(k) && all[*k as usize] == *letter;
-            let arrivals: Vec<u32> = (0..all.len() as u32).filter(outside).collect();
-            moves.refill(old.clone(), first..first + count, others, &arrivals);
-            first += count;
+        in_order(&spans, |r| {
+            let old = spans[r].old..spans[r + 1].old;
+            let is_leaver = |k: &u32| target[*k as usize] != runs[r];
+            let leavers: Vec<u32> = old.clone().filter(is_leaver).collect();
+            let others = (0..target.len() as u32).filter(|k| !old.contains(k));
+            let arrivals: Vec<u32> = others.filter(|k| !is_leaver(k)).collect();
+            moves.refill(old.clone(), spans[r].new..spans[r + 1].new, &leavers, &arrivals);
+        });
+        moves
+    }
+
+    /// Moves letters from one row of runs to another; the letter tells the run in which it belongs.
+    fn regrouped(before: &[&str], runs: &str) -> String {
+        let mut old = vec![0; runs.len()];
+        for (run, name) in before.iter().zip(b'a'..) {
+            old[runs.find(char::from(name)).expect("a run")] = run.len() as u32;
         }
-        assert_eq!(moves.from.len(), moves.to.len());
-        for (from, to) in moves.from.iter().zip(&moves.to) {
-            line[*to as usize] = all[*from as usize];
-        }
-        String::from_utf8(line).expect("letters")
+        let row = before.concat().into_bytes();
+        let moves = regroup(runs.as_bytes(), &old, &row);
+        String::from_utf8(moved(row, &moves)).expect("letters")
     }
 
     #[test]
     fn runs_are_whole_after_the_moves() {
-        assert_eq!(regrouped(&["aab", "bb", "cc"], b"abc"), "aabbbcc");
-        assert_eq!(regrouped(&["aaaa", "bb", "ccac"], b"abc"), "aaaaabbccc");
-        assert_eq!(regrouped(&["bbbbbb", "b", "ca"], b"abc"), "abbbbbbbc");
-        assert_eq!(regrouped(&["aacc", "bdb", "cec"], b"daebc"), "daaebbcccc");
-        assert_eq!(regrouped(&["cc", "aa"], b"dbca"), "ccaa");
-        assert_eq!(regrouped(&["cab", "abc", "bca"], b"abc"), "aaabbbccc");
+        assert_eq!(regrouped(&["aab", "bb", "cc"], "abc"), "aabbbcc");
+        assert_eq!(regrouped(&["aaaa", "bb", "ccac"], "abc"), "aaaaabbccc");
+        assert_eq!(regrouped(&["bbbbbb", "b", "ca"], "abc"), "abbbbbbbc");
+        assert_eq!(regrouped(&["aacc", "bdb", "cec"], "daebc"), "daaebbcccc");
+        assert_eq!(regrouped(&["cc", "aa"], "dabc"), "aacc");
+        assert_eq!(regrouped(&["cab", "abc", "bca"], "abc"), "aaabbbccc");
+        assert_eq!(regrouped(&["bbb", "bab", "ccc"], "abc"), "abbbbbccc");
+    }
+
+    /// Whole numbers below a bound, the same in every run of the test.
+    fn random(state: &mut u64, below: u64) -> u64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 33) % below
+    }
+
+    #[test]
+    fn random_rows_are_regrouped_like_a_sort_does() {
+        let mut state = 3;
+        for round in 0..4000 {
+            let runs: Vec<u8> = (0..1 + random(&mut state, 12) as u8).collect();
+            let longest = [3, 8, 40][round % 3];
+            let old: Vec<u32> = runs
+                .iter()
+                .map(|_| random(&mut state, longest) as u32 * u32::from(random(&mut state, 4) > 0))
+                .collect();
+            let (leave, drift) = (1 + random(&mut state, 100), random(&mut state, 2) == 0);
+            let mut target = Vec::new();
+            for (run, len) in runs.iter().zip(&old) {
+                for _ in 0..*len {
+                    let leaves = random(&mut state, 100) < leave;
+                    let any = runs[random(&mut state, runs.len() as u64) as usize];
+                    target.push(if !leaves { *run } else { any * u8::from(!drift) });
+                }
+            }
+            let moves = regroup(&runs, &old, &target);
+            let row: Vec<(u8, usize)> = target.iter().copied().zip(0..).collect();
+            let mut after = moved(row.clone(), &moves);
+            assert!(after.is_sorted_by_key(|(run, _)| *run), "{old:?}, {target:?}");
+            after.sort_unstable();
+            let mut sorted = row;
+            sorted.sort_unstable();
+            assert_eq!(after, sorted, "{old:?}, {target:?}");
+            let leavers = moves.from.len();
+            assert!(moves.segments.len() <= 2 * runs.len() + leavers);
+        }
     }
 
     #[test]
     fn who_stays_in_place_does_not_move() {
         let mut moves = Moves::default();
-        moves.refill(10..20, 8..17, [12, 15].into_iter(), &[40]);
-        assert_eq!(moves.to, [8, 9, 12, 15]);
-        assert_eq!(moves.from, [17, 18, 19, 40]);
+        moves.refill(10..20, 8..17, &[12, 15], &[40]);
+        let segment = |from, to, len| Segment { from, to, len };
+        assert_eq!(moves.segments, [segment(17, 8, 2), segment(19, 12, 1)]);
+        assert_eq!((&moves.from[..], &moves.to[..]), (&[40][..], &[15][..]));
+    }
+
+    #[test]
+    fn holes_go_along_where_arrivals_can_fill_them() {
+        let mut moves = Moves::default();
+        moves.refill(10..20, 13..24, &[11, 15], &[40, 41, 42]);
+        assert_eq!(moves.segments, [Segment { from: 10, to: 20, len: 3 }]);
+        assert_eq!(moves.to, [21, 15, 23]);
     }
 }

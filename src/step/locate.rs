@@ -4,7 +4,8 @@
 //! nothing is done. Else a [`Plan`] says which runs there will be and which particles change places for that:
 //!
 //! * [`movers`]: only those that left their block, and those that must make room. The order inside a block becomes stale.
-//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when half of them would move.
+//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when more than half left their
+//!   block.
 //!
 //! A plan is made without a change to the world, so that particles outside the grid are an error that changes nothing. Both
 //! ways depend on positions and on the order of particles alone, not on slots of the grid, its policy or threads.
@@ -16,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Place, Result, Status};
 use crate::grid::{EDGE, Grid, GridPolicy, Key, Run};
-use crate::particles::{Moves, refill, reserve};
+use crate::particles::{Mark, Moves, refill, reserve};
 use crate::simd::Real;
 use crate::world::state::{Body, Space, State};
 
@@ -51,7 +52,7 @@ pub struct Plan<const D: usize> {
     /// Moves of all bodies, with places counted from the first particle of the body.
     moves: Moves,
     /// For each body the ends of its runs and of its moves.
-    ends: Vec<(usize, usize)>,
+    ends: Vec<(usize, Mark)>,
     /// Whether a run is in a block that had none of this body, or a block lost its run.
     blocks_change: bool,
 }
@@ -80,7 +81,7 @@ impl<const D: usize> Plan<D> {
 
     /// Ends the body in hand.
     fn end_body(&mut self) {
-        self.ends.push((self.runs.len(), self.moves.from.len()));
+        self.ends.push((self.runs.len(), self.moves.mark()));
     }
 }
 
@@ -123,14 +124,13 @@ fn carry_out<const D: usize>(world: &mut State<D>, plan: &mut Plan<D>) -> Result
             run.block = world.grid.find(key).expect("owners are active blocks");
         }
     }
-    let (mut run, mut step) = (0, 0);
+    let (mut run, mut done) = (0, Mark::default());
     for (body, (end, last)) in world.bodies.iter_mut().zip(&plan.ends) {
         refill(&mut body.runs, end - run, SORTING)?;
         body.runs.extend_from_slice(&plan.runs[run..*end]);
-        let (from, to) = (&plan.moves.from[step..*last], &plan.moves.to[step..*last]);
-        body.particles.rearrange(from, to, world.parallel);
+        body.particles.rearrange(plan.moves.between(done, *last), world.parallel);
         body.particles.moved.fill(0);
-        (run, step) = (*end, *last);
+        (run, done) = (*end, *last);
     }
     world.tiles.assign(plan.runs.iter().copied(), world.grid.place(), D)?;
     (world.regroup, world.rescan) = (false, false);

@@ -1,32 +1,25 @@
 //! The plan that moves only particles that left their block, and those that stand in the way.
 //!
 //! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
-//! particles at the one end go to the other, since the order inside a run is free.
+//! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
 
 use super::{Plan, SORTING, place_inside};
 use crate::error::Result;
 use crate::grid::index::Index;
 use crate::grid::key::morton_order;
 use crate::grid::{Key, NONE, Run};
-use crate::particles::{refill, reserve};
+use crate::particles::{Span, in_order, refill, reserve};
 use crate::world::state::{Body, Space, State};
-
-/// A particle that left its block.
-#[derive(Clone, Copy, Debug)]
-struct Mover {
-    /// Place of the particle.
-    particle: u32,
-    /// Number of the run that it goes to.
-    target: u32,
-}
 
 /// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.
 #[derive(Debug, Default)]
 pub struct Regrouper<const D: usize> {
     /// Number of the body's run in each slot of the grid.
     run_of: Vec<u32>,
-    /// Those who leave, in storage order.
-    movers: Vec<Mover>,
+    /// Places of those who leave, in storage order.
+    movers: Vec<u32>,
+    /// For each mover the number of the run that it goes to.
+    targets: Vec<u32>,
     /// For each run the first of its movers; one more at the end.
     first_mover: Vec<u32>,
     /// Keys of blocks that are new to the body.
@@ -42,10 +35,12 @@ pub struct Regrouper<const D: usize> {
     arrivals: Vec<u32>,
     /// For each run the end of its arrivals; before that the number of them, then their start.
     arrived: Vec<u32>,
+    /// Where the runs of the sequence start; one more at the end.
+    spans: Vec<Span>,
 }
 
-/// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles would
-/// move; an error names a particle that is outside the grid.
+/// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles did;
+/// an error names a particle that is outside the grid.
 pub fn plan_moves<const D: usize>(
     world: &State<D>,
     buffers: &mut Regrouper<D>,
@@ -73,6 +68,8 @@ pub fn plan_moves<const D: usize>(
         order_runs(world, body, buffers)?;
         sort_arrivals(buffers)?;
         lay_out(world, b, buffers, plan)?;
+        fill_runs(buffers, plan)?;
+        plan.end_body();
         if plan.moves.from.len() > most {
             return Ok(false);
         }
@@ -91,7 +88,9 @@ fn find_movers<const D: usize>(
     let grid = &world.grid;
     buffers.new_keys.clear();
     buffers.new_index.clear();
-    refill(&mut buffers.movers, body.particles.len() / 8, SORTING)?;
+    for list in [&mut buffers.movers, &mut buffers.targets] {
+        refill(list, body.particles.len() / 8, SORTING)?;
+    }
     refill(&mut buffers.first_mover, body.runs.len() + 1, SORTING)?;
     let (mut run, mut key) = (Run { block: 0, body: 0, first: 0, end: 0 }, [0; D]);
     for (w, word) in body.particles.moved.iter().enumerate() {
@@ -111,7 +110,9 @@ fn find_movers<const D: usize>(
                 let target =
                     if known == NONE { new_run(buffers, body.runs.len(), new)? } else { known };
                 reserve(&mut buffers.movers, 1, SORTING)?;
-                buffers.movers.push(Mover { particle: k, target });
+                reserve(&mut buffers.targets, 1, SORTING)?;
+                buffers.movers.push(k);
+                buffers.targets.push(target);
             }
         }
     }
@@ -141,7 +142,7 @@ fn order_runs<const D: usize>(
     body: &Body,
     buffers: &mut Regrouper<D>,
 ) -> Result<()> {
-    let Regrouper { movers, first_mover, new_keys, new_runs, count, sequence, .. } = buffers;
+    let Regrouper { targets, first_mover, new_keys, new_runs, count, sequence, .. } = buffers;
     let (old, all) = (body.runs.len(), body.runs.len() + new_keys.len());
     for list in [&mut *count, &mut *sequence, &mut *new_runs] {
         refill(list, all, SORTING)?;
@@ -150,8 +151,8 @@ fn order_runs<const D: usize>(
         count.push(run.end - run.first - (first_mover[r + 1] - first_mover[r]));
     }
     count.resize(all, 0);
-    for mover in movers {
-        count[mover.target as usize] += 1;
+    for target in targets {
+        count[*target as usize] += 1;
     }
     let keys = world.grid.keys();
     let key = |r: u32| match body.runs.get(r as usize) {
@@ -174,54 +175,71 @@ fn order_runs<const D: usize>(
 
 /// Sorts the movers by the run that they go to; those of a run keep their order.
 fn sort_arrivals<const D: usize>(buffers: &mut Regrouper<D>) -> Result<()> {
-    let Regrouper { movers, count, arrivals, arrived, .. } = buffers;
+    let Regrouper { movers, targets, count, arrivals, arrived, .. } = buffers;
     refill(arrivals, movers.len(), SORTING)?;
     arrivals.resize(movers.len(), 0);
     refill(arrived, count.len() + 1, SORTING)?;
     arrived.resize(count.len() + 1, 0);
-    for mover in &*movers {
-        arrived[mover.target as usize + 1] += 1;
+    for target in &*targets {
+        arrived[*target as usize + 1] += 1;
     }
     for r in 1..arrived.len() {
         arrived[r] += arrived[r - 1];
     }
-    for mover in &*movers {
-        let to = &mut arrived[mover.target as usize];
-        arrivals[*to as usize] = mover.particle;
+    for (mover, target) in movers.iter().zip(&*targets) {
+        let to = &mut arrived[*target as usize];
+        arrivals[*to as usize] = *mover;
         *to += 1;
     }
     Ok(())
 }
 
-/// Gives every run its new range and adds the moves that fill it.
+/// Gives every run its new range.
 fn lay_out<const D: usize>(
     world: &State<D>,
     b: usize,
-    buffers: &Regrouper<D>,
+    buffers: &mut Regrouper<D>,
     plan: &mut Plan<D>,
 ) -> Result<()> {
-    let Regrouper { movers, first_mover, new_keys, count, sequence, arrivals, arrived, .. } =
-        buffers;
+    let Regrouper { new_keys, count, sequence, spans, .. } = buffers;
     let (runs, keys) = (&world.bodies[b].runs, world.grid.keys());
-    let mut first = 0;
+    refill(spans, sequence.len() + 1, SORTING)?;
+    let (mut last, mut first) = (0, 0);
     for r in sequence.iter().map(|r| *r as usize) {
+        spans.push(Span { old: last, new: first });
         let end = first + count[r];
-        let (block, key, old, leavers) = match runs.get(r) {
+        let (block, key) = match runs.get(r) {
             Some(run) => {
-                let leavers = &movers[first_mover[r] as usize..first_mover[r + 1] as usize];
-                (run.block, keys[run.block as usize], run.first..run.end, leavers)
+                last = run.end;
+                (run.block, keys[run.block as usize])
             }
-            None => (NONE, new_keys[r - runs.len()], first..first, &[][..]),
+            None => (NONE, new_keys[r - runs.len()]),
         };
         plan.blocks_change |= block == NONE || first == end;
         if first < end {
-            let start = if r > 0 { arrived[r - 1] } else { 0 };
-            let arrivals = &arrivals[start as usize..arrived[r] as usize];
-            plan.moves.refill(old, first..end, leavers.iter().map(|m| m.particle), arrivals);
             plan.push(Run { block, body: b as u32, first, end }, key)?;
         }
         first = end;
     }
-    plan.end_body();
+    spans.push(Span { old: last, new: first });
+    Ok(())
+}
+
+/// Adds the moves that fill the new ranges.
+fn fill_runs<const D: usize>(buffers: &Regrouper<D>, plan: &mut Plan<D>) -> Result<()> {
+    let Regrouper { movers, first_mover, sequence, arrivals, arrived, spans, .. } = buffers;
+    let moves = &mut plan.moves;
+    moves.reserve_segments(sequence.len(), movers.len(), SORTING)?;
+    in_order(spans, |place| {
+        let r = sequence[place] as usize;
+        let (this, next) = (spans[place], spans[place + 1]);
+        let leavers = match first_mover.get(r + 1) {
+            Some(end) => &movers[first_mover[r] as usize..*end as usize],
+            None => &[],
+        };
+        let start = if r > 0 { arrived[r - 1] } else { 0 };
+        let arrivals = &arrivals[start as usize..arrived[r] as usize];
+        moves.refill(this.old..next.old, this.new..next.new, leavers, arrivals);
+    });
     Ok(())
 }
