@@ -80,7 +80,9 @@ pub type GatherKernel<const D: usize> =
 pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gather, dt: f64) {
     let Piece { chunk, scratch, tile, loaded, runs, .. } = piece;
     if D == 2 {
-        scratch.velocity_gradient.fill(0.0);
+        for c in [2, 5, 6, 7, 8] {
+            scratch.velocity_gradient[c * scratch.stride..][..scratch.stride].fill(0.0);
+        }
     }
     let start = runs.partition_point(|run| run.end as usize <= chunk.first);
     let job = GatherJob {

@@ -49,9 +49,9 @@ pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, true);
     let State { grid, tiles, parallel, context, .. } = world;
-    let (isa, all, nodes) = (context.isa(), &grid.backward[..], block_nodes(D));
-    let pull = |(block, (r0, f)): (usize, (&mut [Lanes], &mut [Lanes]))| {
-        isa.dispatch(Pull::<D> { tiles, all, block, low: r0, high: Some(f) });
+    let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
+    let pull = |(n, (low, high)): (usize, (&mut [Lanes], &mut [Lanes]))| {
+        isa.dispatch(Pull::<D> { tiles, around, first: n * BLOCKS, low, high: Some(high) });
     };
     if *parallel {
         let records = grid.velocity.par_chunks_mut(nodes).zip(grid.force.par_chunks_mut(nodes));
@@ -66,9 +66,9 @@ pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
 pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
     scatter(world, false);
     let State { grid, tiles, parallel, context, .. } = world;
-    let (isa, all, nodes) = (context.isa(), &grid.backward[..], block_nodes(D));
-    let pull = |(block, r1): (usize, &mut [Lanes])| {
-        isa.dispatch(Pull::<D> { tiles, all, block, low: r1, high: None });
+    let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
+    let pull = |(n, low): (usize, &mut [Lanes])| {
+        isa.dispatch(Pull::<D> { tiles, around, first: n * BLOCKS, low, high: None });
     };
     if *parallel {
         grid.increment.par_chunks_mut(nodes).enumerate().for_each(pull);
@@ -133,15 +133,18 @@ fn split_tiles(
     );
 }
 
+/// Blocks that pull in one call.
+const BLOCKS: usize = 16;
+
 /// Most nodes of a block.
 const BLOCK_NODES: usize = block_nodes(3);
 
-/// Adds up, corner by corner, what the tiles around a block hold for its nodes, and writes the halves of each node. Tiles have left
-/// the caches since they were filled: those of the next block are asked for while this one is summed.
+/// Adds up, corner by corner, what the tiles around each block hold for its nodes, and writes the halves of each node. Tiles have left
+/// the caches since they were filled: those of the next block are asked for while one is summed.
 struct Pull<'a, const D: usize> {
     tiles: &'a Tiles,
-    all: &'a [Neighbours],
-    block: usize,
+    around: &'a [Neighbours],
+    first: usize,
     low: &'a mut [Lanes],
     high: Option<&'a mut [Lanes]>,
 }
@@ -150,31 +153,41 @@ impl<const D: usize> Kernel for Pull<'_, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self { tiles, all, block, low, high } = self;
+        let Self { tiles, around, first, low, mut high } = self;
+        let nodes = block_nodes(D);
         let mut sums = [TileNode::default(); BLOCK_NODES];
-        for corner in 0..1 << D {
-            for tile in tiles.around::<D>(all.get(block + 1), corner).take(1) {
-                for (from, _, len) in shared_rows::<D>(tiles.edge, corner) {
-                    for n in 0..len {
-                        prefetch(tile, from + n);
+        for (b, low) in low.chunks_exact_mut(nodes).enumerate() {
+            let block = first + b;
+            sums[..nodes].fill(TileNode::default());
+            for corner in 0..1 << D {
+                ask_for_tile::<D>(tiles, around.get(block + 1), corner);
+                for tile in tiles.around::<D>(around.get(block), corner) {
+                    for (from, to, len) in shared_rows::<D>(tiles.edge, corner) {
+                        for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
+                            (V::load_node(sum) + V::load_node(node)).store_node(sum);
+                        }
                     }
                 }
             }
-            for tile in tiles.around::<D>(all.get(block), corner) {
-                for (from, to, len) in shared_rows::<D>(tiles.edge, corner) {
-                    for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
-                        (V::load_node(sum) + V::load_node(node)).store_node(sum);
-                    }
-                }
-            }
-        }
-        for (to, TileNode([m, x, y, z, ..])) in low.iter_mut().zip(&sums) {
-            *to = [*m, *x, *y, *z];
-        }
-        if let Some(high) = high {
-            for (to, TileNode([.., m, x, y, z])) in high.iter_mut().zip(&sums) {
+            for (to, TileNode([m, x, y, z, ..])) in low.iter_mut().zip(&sums) {
                 *to = [*m, *x, *y, *z];
             }
+            if let Some(high) = &mut high {
+                let high = &mut high[b * nodes..][..nodes];
+                for (to, TileNode([.., m, x, y, z])) in high.iter_mut().zip(&sums) {
+                    *to = [*m, *x, *y, *z];
+                }
+            }
+        }
+    }
+}
+
+/// Asks the memory for the nodes that a block shares with the first tile at a corner.
+#[inline(always)]
+fn ask_for_tile<const D: usize>(tiles: &Tiles, around: Option<&Neighbours>, corner: usize) {
+    if let Some(tile) = tiles.around::<D>(around, corner).next() {
+        for (from, _, len) in shared_rows::<D>(tiles.edge, corner) {
+            (from..from + len).for_each(|n| prefetch(tile, n));
         }
     }
 }
