@@ -6,7 +6,7 @@
 
 use crate::material::{Kinematics, Rotation};
 use crate::simd::{Kernel, LANES, Vector, each};
-use crate::tensor::{Rows, SYMMETRIC, exp, rotated, step_rotations};
+use crate::tensor::{Rows, SYMMETRIC, exp, rotated, step_rotations, turned};
 use crate::world::state::{ChunkStage, Piece};
 
 /// Fills the chunk's scratch with what the material takes, and updates volume and deformation gradient.
@@ -23,10 +23,16 @@ pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
     piece.lap(ChunkStage::Strained);
 }
 
-/// The velocity gradients of eight points.
+/// The velocity gradients of eight points; in two dimensions those in the plane.
 #[inline(always)]
-fn gradient<V: Vector>(velocity_gradient: &[f64], stride: usize, k: usize) -> Rows<V> {
-    each!(a in 3, b in 3 => V::load(&velocity_gradient[(3 * a + b) * stride + k..][..LANES]))
+fn gradient<V: Vector, const D: usize>(l: &[f64], stride: usize, k: usize) -> Rows<V> {
+    let mut rows = [[V::splat(0.0); 3]; 3];
+    for a in 0..D {
+        for b in 0..D {
+            rows[a][b] = V::load(&l[(3 * a + b) * stride + k..][..LANES]);
+        }
+    }
+    rows
 }
 
 struct Strain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
@@ -41,7 +47,7 @@ impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
         let rotates = material.model().kinematics == Kinematics::StrainIncrement;
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
-            let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+            let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
             let half = V::splat(0.5 * dt);
             let increment = each!(c in 6 => {
                 let (a, b) = SYMMETRIC[c];
@@ -49,7 +55,7 @@ impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
             });
             let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
             if rotates {
-                stress = rotated(&step_rotations(&l, dt), stress);
+                stress = turned::<V, D>(&l, dt, stress);
             }
             for c in 0..6 {
                 increment[c].store(&mut scratch.strain_increment[c * stride + k..][..LANES]);
@@ -77,7 +83,7 @@ impl<const D: usize> Kernel for DeformationGradient<'_, '_, '_, D> {
         let (first, stride) = (chunk.layout.deformation_gradient, scratch.stride);
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
-            let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+            let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
             let f: Rows<V> =
                 each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]));
             for a in 0..3 {
@@ -116,7 +122,7 @@ impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
             let components = state.kind.components();
             if state.rotation == Rotation::Objective {
                 for k in (0..chunk.len).step_by(LANES) {
-                    let l = gradient::<V>(scratch.velocity_gradient, stride, k);
+                    let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
                     let r = step_rotations(&l, dt);
                     let at = |c: usize| (first + c) * stride + k;
                     let mut value = [V::splat(0.0); 9];

@@ -49,13 +49,34 @@ pub fn step_rotation(l: &Mat3, dt: f64) -> Mat3 {
 #[inline(always)]
 pub fn step_rotations<V: Vector>(l: &Rows<V>, dt: f64) -> Rows<V> {
     let w = spin(l, V::splat(dt));
-    let t = square(&w);
+    rodrigues(&w, factors(square(&w)))
+}
+
+/// R s Rᵀ of eight symmetric tensors with the rotations of a step; in two dimensions those about z, for a third of the cost.
+#[inline(always)]
+pub fn turned<V: Vector, const D: usize>(l: &Rows<V>, dt: f64, s: [V; 6]) -> [V; 6] {
+    if D == 3 {
+        return rotated(&step_rotations(l, dt), s);
+    }
+    let [w, ..] = spin(l, V::splat(dt));
+    let (a, b) = factors(w * w);
+    let (cos, sin) = (V::splat(1.0) - b * w * w, a * w);
+    let (cc, ss, cs) = (cos * cos, sin * sin, cos * sin);
+    let [xx, yy, zz, xy, yz, zx] = s;
+    let shear = (cs + cs) * xy;
+    let plane =
+        [cc * xx + shear + ss * yy, ss * xx - shear + cc * yy, cs * (yy - xx) + (cc - ss) * xy];
+    [plane[0], plane[1], zz, plane[2], cos * yz - sin * zx, cos * zx + sin * yz]
+}
+
+/// The two coefficients of eight rotations by angles whose squares are `t`.
+#[inline(always)]
+fn factors<V: Vector>(t: V) -> (V, V) {
     if t.less_than(V::splat(SMALL)) == u8::MAX {
-        return rodrigues(&w, series(t));
+        return series(t);
     }
     let factors = t.to_array().map(|t| if t < SMALL { series(t) } else { closed_form(t) });
-    let (a, b) = (factors.map(|f| f.0), factors.map(|f| f.1));
-    rodrigues(&w, (V::from_array(a), V::from_array(b)))
+    (V::from_array(factors.map(|f| f.0)), V::from_array(factors.map(|f| f.1)))
 }
 
 /// Components (0, 1), (1, 2) and (0, 2) of W dt.
@@ -147,6 +168,31 @@ mod tests {
             assert!((r - expected).abs().max() < 1e-15);
             assert!((r * r.transpose() - Mat3::identity()).abs().max() < 1e-15);
         }
+    }
+
+    /// Rotations in the plane, of eight tensors at once, against those in space.
+    struct InThePlane;
+
+    impl crate::simd::Kernel for InThePlane {
+        type Output = ();
+        #[inline(always)]
+        fn run<V: Vector>(self) {
+            let s = [3.0, -1.0, 0.5, 2.0, -0.7, 1.1];
+            for angle in [1e-3, 0.02, 0.4, -2.0] {
+                let mut l = [[V::splat(0.0); 3]; 3];
+                (l[0][1], l[1][0]) = (V::splat(-1.5 * angle), V::splat(0.5 * angle));
+                let turned = turned::<V, 2>(&l, 1.0, s.map(V::splat));
+                let expected = super::turned::<V, 3>(&l, 1.0, s.map(V::splat));
+                for c in 0..6 {
+                    assert!((turned[c] - expected[c]).abs().largest() < 1e-14, "component {c}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_turn_in_the_plane_is_a_rotation_about_z() {
+        crate::simd::Isa::all().for_each(|isa| isa.dispatch(InThePlane));
     }
 
     #[test]
