@@ -6,6 +6,7 @@
 
 mod bandwidth;
 mod machine;
+mod materials;
 mod measure;
 mod peers;
 mod report;
@@ -131,8 +132,14 @@ fn is_first(group: &[Case]) -> bool {
 
 fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<(), String> {
     let whole = arguments.scene.is_none();
-    let checks = targets::judge(rows, arguments.particles, stick);
-    let tables = format!("{}\n{}", report::rows(rows, whole), report::checks(&checks));
+    let mut checks = targets::judge(rows, arguments.particles, stick);
+    let mut tables = report::rows(rows, whole);
+    if whole && !arguments.json {
+        let (table, of_models) = materials::measure()?;
+        checks.extend(of_models);
+        tables = format!("{tables}\n{table}");
+    }
+    let tables = format!("{tables}\n{}", report::checks(&checks));
     if arguments.json {
         print!("{}", report::json(rows, whole));
     } else {
