@@ -57,7 +57,7 @@ impl Kernel for Update<'_> {
         for ((r0, r1), force) in r0.zip(r1).zip(forces) {
             let (m, n) = (r0[0], r0[4]);
             let inverse = V::halves(inverse(m), inverse(n));
-            let present = V::halves(f64::from(m > 0.0), f64::from(n > 0.0));
+            let present = V::halves(present(m), present(n));
             let before = V::load(r0) * inverse;
             let mut acceleration = V::load(force).mul_add(inverse, g * present);
             if self.damping > 0.0 {
@@ -73,8 +73,14 @@ impl Kernel for Update<'_> {
     }
 }
 
-/// 1 / m; zero for an empty node, whose velocity is then zero too.
+/// 1 / m; zero for an empty node, whose velocity is then zero too. A mass that has no inverse counts as none.
 #[inline(always)]
 fn inverse(m: f64) -> f64 {
-    if m > 0.0 { 1.0 / m } else { 0.0 }
+    if m >= f64::MIN_POSITIVE { 1.0 / m } else { 0.0 }
+}
+
+/// 1 for a node with mass, else 0.
+#[inline(always)]
+fn present(m: f64) -> f64 {
+    f64::from(m >= f64::MIN_POSITIVE)
 }

@@ -23,13 +23,19 @@ pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
     piece.lap(ChunkStage::Strained);
 }
 
-/// The velocity gradients of eight points; in two dimensions those in the plane.
+/// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the plane. Lanes without a point are zero: what
+/// the scratch held there before must not matter.
 #[inline(always)]
-fn gradient<V: Vector, const D: usize>(l: &[f64], stride: usize, k: usize) -> Rows<V> {
+fn gradient<V: Vector, const D: usize>(
+    l: &[f64],
+    stride: usize,
+    (k, end): (usize, usize),
+) -> Rows<V> {
     let mut rows = [[V::splat(0.0); 3]; 3];
     for a in 0..D {
         for b in 0..D {
-            rows[a][b] = V::load(&l[(3 * a + b) * stride + k..][..LANES]);
+            let first = (3 * a + b) * stride;
+            rows[a][b] = V::load(&l[first + k..first + end]);
         }
     }
     rows
@@ -47,7 +53,7 @@ impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
         let rotates = material.model().kinematics == Kinematics::StrainIncrement;
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
-            let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
+            let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
             let half = V::splat(0.5 * dt);
             let increment = each!(c in 6 => {
                 let (a, b) = SYMMETRIC[c];
@@ -83,7 +89,7 @@ impl<const D: usize> Kernel for DeformationGradient<'_, '_, '_, D> {
         let (first, stride) = (chunk.layout.deformation_gradient, scratch.stride);
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
-            let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
+            let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
             let f: Rows<V> =
                 each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]));
             for a in 0..3 {
@@ -122,7 +128,8 @@ impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
             let components = state.kind.components();
             if state.rotation == Rotation::Objective {
                 for k in (0..chunk.len).step_by(LANES) {
-                    let l = gradient::<V, D>(scratch.velocity_gradient, stride, k);
+                    let end = chunk.len.min(k + LANES);
+                    let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
                     let r = step_rotations(&l, dt);
                     let at = |c: usize| (first + c) * stride + k;
                     let mut value = [V::splat(0.0); 9];

@@ -5,7 +5,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::simd::{Real, Vector, each};
+use crate::simd::{LANES, Real, Vector, each};
 
 /// A 3x3 matrix.
 pub type Mat3 = Matrix3<f64>;
@@ -140,18 +140,25 @@ fn product<R: Real>(x: [R; 3], y: [R; 3]) -> R {
     x[2].mul_add(y[2], x[1].mul_add(y[1], x[0] * y[0]))
 }
 
-/// e^x; within round-off, and fast where |x| ≤ ¼ in all lanes.
+/// e^x; within round-off, and fast where |x| < ¼ in all lanes. A lane does not depend on the others.
 #[inline(always)]
 pub fn exp<V: Vector>(x: V) -> V {
-    if x.abs().less_than(V::splat(0.25)) != u8::MAX {
-        return V::from_array(x.to_array().map(f64::exp));
-    }
     // Taylor's series up to x^12 / 12!
     let mut sum = V::splat(1.0);
     for n in 0..12 {
         sum = (x * V::splat(1.0 / f64::from(12 - n))).mul_add(sum, V::splat(1.0));
     }
-    sum
+    let small = x.abs().less_than(V::splat(0.25));
+    if small == u8::MAX {
+        return sum;
+    }
+    let (mut lanes, x) = (sum.to_array(), x.to_array());
+    for l in 0..LANES {
+        if small >> l & 1 == 0 {
+            lanes[l] = x[l].exp();
+        }
+    }
+    V::from_array(lanes)
 }
 
 #[cfg(test)]

@@ -1,11 +1,15 @@
 //! The state after 200 steps is the same, bit for bit, for any number of threads.
 
+use std::sync::Arc;
+
 use lahar::boundary::{Wall, WallKind};
+use lahar::context::Context;
 use lahar::simd::Isa;
 use lahar::transfer::TransferKind;
+use lahar::world::World;
 use lahar::world::options::Options;
 
-use crate::setup::{a_box, context_with, elastic, fill, read, world};
+use crate::setup::{a_box, add_points, context_with, elastic, fill, read, world, write};
 
 /// All fields of two colliding bodies (more than 20 000 particles) after 200 steps, and the number of threads that worked.
 fn state_after_a_collision(
@@ -58,6 +62,57 @@ fn any_number_of_threads_gives_the_same_bits() {
             let (bits, used) = state_after_a_collision(threads, Isa::best(), transfer, 200);
             assert!(used >= 2, "of {threads} threads only {used} worked");
             assert!(bits == one, "{threads} threads give other bits than one");
+        }
+    }
+}
+
+/// A row of particles, 20 in a line, 0.05 m apart.
+fn row(count: usize) -> Vec<f64> {
+    let x = |k: usize| 0.05 * (k % 20) as f64 + 0.01 * (k as f64).sin();
+    (0..count).flat_map(|k| [x(k), 0.05 + 0.05 * (k / 20) as f64]).collect()
+}
+
+/// A world with a sticky floor.
+fn a_floor(context: &Arc<Context>) -> World {
+    let gravity = [0.0, -9.81, 0.0];
+    let options = Options { dimension: 2, spacing: 0.1, gravity, ..Options::default() };
+    let mut world = world(context, &options);
+    let kind = WallKind::Sticky;
+    let floor = Wall { axis: 1, side: 1, position: 0.0, kind, friction: 0.0 };
+    world.add_wall(&floor).expect("a good wall");
+    world
+}
+
+/// Bits of a body of 101 particles, no multiple of eight, after 50 steps.
+fn state_of_a_small_body(context: &Arc<Context>) -> Vec<u64> {
+    let material = elastic(context, 1e6, 0.3);
+    let mut world = a_floor(context);
+    let speed = |k: usize| [8.0 * (7.0 * k as f64).sin(), -8.0 * (3.0 * k as f64).cos()];
+    let v: Vec<f64> = (0..101).flat_map(speed).collect();
+    let body = add_points(&mut world, &material, (&row(101), &v), 0.0025, 1000.0);
+    for _ in 0..50 {
+        world.step(None).expect("a good step");
+    }
+    let fields = ["position", "velocity", "stress", "volume", "strain_energy"];
+    fields.iter().flat_map(|f| read(&world, body, f)).map(f64::to_bits).collect()
+}
+
+#[test]
+fn it_does_not_matter_what_a_thread_worked_on_before() {
+    for isa in Isa::all() {
+        let context = context_with(1, isa);
+        let alone = state_of_a_small_body(&context);
+        for particles in [16, 17, 24] {
+            let material = elastic(&context, 1e6, 0.3);
+            let mut other = a_floor(&context);
+            let rest = vec![0.0; 2 * particles];
+            let body = add_points(&mut other, &material, (&row(particles), &rest), 0.0025, 1000.0);
+            write(&mut other, body, "stress", &vec![-1e5; 6 * particles]);
+            other.step(None).expect("a good step");
+            assert!(
+                state_of_a_small_body(&context) == alone,
+                "{isa:?}, {particles} particles before"
+            );
         }
     }
 }

@@ -64,6 +64,8 @@ impl Batch<'_> {
     #[inline(always)]
     pub fn for_each_point<const S: usize, L: PointLaw<S>>(&mut self, law: &L) {
         const { assert!(S == state_components(L::Model::STATES), "S is not the size of the state") };
+        const { assert!(!L::Model::OUTPUTS.has(Output::ENERGY), "a law of a point gives no energy") };
+        const { assert!(!L::Model::OUTPUTS.has(Output::DT_FACTOR), "a law of a point gives no factor") };
         // One variable per array: those that the model does not use cost nothing.
         let mut before = Before::<S> {
             strain_increment: &mut [EMPTY; 6],

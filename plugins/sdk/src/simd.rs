@@ -63,7 +63,7 @@ pub fn force(level: Level) -> bool {
 
 #[cold]
 fn decide() -> Level {
-    let level = level_of(std::env::var("LAHAR_SIMD").ok().as_deref());
+    let level = level_of(std::env::var("LAHAR_SIMD").ok().as_deref().map(str::trim));
     CHOSEN.store(level as u8, Ordering::Relaxed);
     level
 }
