@@ -243,7 +243,8 @@ lahar_status lahar_context_thread_count(const lahar_context *context, int32_t *t
 
 // Name of the instruction set that the context's kernels use: "scalar", "avx2" or "avx512".
 //
-// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made. Results
+// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made; models of
+// lahar's SDK choose theirs in the same way, once in a process. Results
 // are the same to the last bit for any number of threads; between instruction sets they differ by round-off.
 //
 // The text is static: do not free it. NULL for a NULL context. Cannot fail.
