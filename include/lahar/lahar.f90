@@ -172,6 +172,7 @@ module lahar
     type(lahar_array) :: velocity
     type(lahar_array) :: stress
     real(c_double) :: density = 0.0_c_double
+    type(lahar_array) :: size
   end type lahar_particles
 
   type, bind(c), public :: lahar_fill
@@ -1348,14 +1349,14 @@ contains
   end function lahar_default_fill
 
   !> Adds a body from arrays: position(dimension, n) [m], volume(n) [m^3], either mass(n) [kg] or density [kg/m^3],
-  !> velocity(dimension, n) [m/s], stress(6, n) [Pa]. The particles get the ids 0 to n - 1.
-  subroutine world_add_particles(self, material, position, volume, mass, density, velocity, stress, body, stat, errmsg)
+  !> velocity(dimension, n) [m/s], stress(6, n) [Pa], edges(dimension, n) [m] of their domains. The particles get the ids 0 to n - 1.
+  subroutine world_add_particles(self, material, position, volume, mass, density, velocity, stress, body, stat, errmsg, edges)
     class(lahar_world), intent(inout) :: self
     class(lahar_material), intent(in) :: material
     real(c_double), intent(in), contiguous, target :: position(:, :), volume(:)
     real(c_double), intent(in), contiguous, target, optional :: mass(:)
     real(c_double), intent(in), optional :: density
-    real(c_double), intent(in), contiguous, target, optional :: velocity(:, :), stress(:, :)
+    real(c_double), intent(in), contiguous, target, optional :: velocity(:, :), stress(:, :), edges(:, :)
     integer(c_int64_t), intent(out), optional :: body
     integer, intent(out), optional :: stat
     character(*), intent(inout), optional :: errmsg
@@ -1370,6 +1371,7 @@ contains
     if (present(mass)) fits = fits .and. size(mass) == n
     if (present(velocity)) fits = fits .and. all(shape(velocity) == shape(position))
     if (present(stress)) fits = fits .and. all(shape(stress) == [6, n])
+    if (present(edges)) fits = fits .and. all(shape(edges) == shape(position))
     dimension = dimension_of(self)
     fits = fits .and. (dimension == 0 .or. dimension == size(position, 1))
     if (.not. fits) then
@@ -1384,6 +1386,7 @@ contains
     if (present(density)) particles%density = density
     if (present(velocity)) particles%velocity%data = c_loc(velocity)
     if (present(stress)) particles%stress%data = c_loc(stress)
+    if (present(edges)) particles%size%data = c_loc(edges)
     status = lahar_body_add_particles(self%handle, material%handle, particles, id)
     if (present(body)) body = id(1)
     call finish(status, stat, errmsg)

@@ -744,6 +744,9 @@ typedef struct lahar_particles {
     lahar_array stress;
     // Mass density [kg/m^3], > 0; used if `mass` is not given.
     double density;
+    // Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given: not known. The GIMP shape functions
+    // and tractions on the body need them.
+    lahar_array size;
 } lahar_particles;
 
 // How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or `mass`.
@@ -1329,7 +1332,7 @@ LAHAR_ASSERT_LAYOUT(sizeof(lahar_array) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, data) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, component_stride) == 8);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, point_stride) == 16);
-LAHAR_ASSERT_LAYOUT(sizeof(lahar_particles) == 144);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_particles) == 168);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, reserved) == 4);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, count) == 8);
@@ -1339,6 +1342,7 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, mass) == 64);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, velocity) == 88);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, stress) == 112);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, density) == 136);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_particles, size) == 144);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_fill) == 96);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_fill, particles_per_cell) == 4);

@@ -49,6 +49,9 @@ pub struct lahar_particles {
     pub stress: lahar_array,
     /// Mass density [kg/m^3], > 0; used if `mass` is not given.
     pub density: f64,
+    /// Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given: not known. The GIMP shape functions
+    /// and tractions on the body need them.
+    pub size: lahar_array,
 }
 
 // SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers and raw pointers only.
@@ -70,6 +73,7 @@ const NO_PARTICLES: lahar_particles = lahar_particles {
     velocity: NO_ARRAY,
     stress: NO_ARRAY,
     density: 0.0,
+    size: NO_ARRAY,
 };
 
 /// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or `mass`.
@@ -190,6 +194,7 @@ unsafe fn particle_arrays<'a>(
         density: particles.density,
         velocity: optional(&particles.velocity, dimension, "velocity")?,
         stress: optional(&particles.stress, 6, "stress")?,
+        size: optional(&particles.size, dimension, "size")?,
     })
 }
 

@@ -44,9 +44,9 @@ layout! {
     lahar_array: 24 {
         data: 0, component_stride: 8, point_stride: 16,
     }
-    lahar_particles: 144 {
+    lahar_particles: 168 {
         struct_size: 0, reserved: 4, count: 8, position: 16, volume: 40, mass: 64, velocity: 88,
-        stress: 112, density: 136,
+        stress: 112, density: 136, size: 144,
     }
     lahar_fill: 96 {
         struct_size: 0, particles_per_cell: 4, density: 8, mass: 16, velocity: 24, stress: 48,

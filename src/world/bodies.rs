@@ -5,13 +5,13 @@ use std::sync::Arc;
 use crate::error::{Error, Place, Result};
 use crate::material::{Kinematics, Material};
 use crate::particles::seeding::{Fill, Region, fill};
-use crate::particles::{CHUNK, Layout, Particles};
+use crate::particles::{CHUNK, Layout, Particles, reserve};
 use crate::step::locate::FARTHEST;
 use crate::transfer::TransferKind;
 
-use super::host_arrays::{ParticleArrays, Strided};
+use super::host_arrays::{ParticleArrays, Strided, Strides};
 use super::scratch::with_scratch;
-use super::state::{Body, State};
+use super::state::{Body, Sizes, State};
 
 /// Most particles of a body.
 const MOST: usize = u32::MAX as usize - 1;
@@ -60,7 +60,8 @@ impl<const D: usize> State<D> {
                 particles.column_mut(layout.deformation_gradient + c).fill(1.0);
             }
         }
-        self.insert(Body { id, material: material.clone(), particles, runs: Vec::new() })
+        let sizes = sizes(arrays, n, D)?;
+        self.insert(Body { id, material: material.clone(), particles, runs: Vec::new(), sizes })
     }
 
     /// Adds a body that fills a region.
@@ -78,9 +79,9 @@ impl<const D: usize> State<D> {
                 how.density, how.mass
             )));
         }
-        let (points, volume) =
+        let (points, size) =
             fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
-        let n = points.len();
+        let (n, volume) = (points.len(), size.iter().product::<f64>());
         let density = if given.0 { how.density } else { how.mass / (volume * n as f64) };
         if !(density > 0.0 && density.is_finite()) {
             return Err(Error::invalid(format!(
@@ -93,6 +94,7 @@ impl<const D: usize> State<D> {
             &ParticleArrays {
                 position: Strided::interleaved(points.as_flattened(), D)?,
                 volume: Strided::constant(&[volume], n),
+                size: Some(Strided::constant(&size, n)),
                 mass: None,
                 density,
                 velocity: Some(Strided::constant(&how.velocity[..D], n)),
@@ -173,6 +175,40 @@ fn copy(
         }
     }
     Ok(())
+}
+
+/// Edge lengths of the particles, if the host gave them.
+fn sizes(arrays: &ParticleArrays<'_>, n: usize, dimension: usize) -> Result<Sizes> {
+    let Some(array) = &arrays.size else {
+        return Ok(Sizes::Unknown);
+    };
+    let Strides { count, components, point, .. } = array.strides;
+    if count != n || components != dimension {
+        return Err(Error::invalid(format!(
+            "size must hold {dimension} components of {n} particles, got {components} of {count}"
+        )));
+    }
+    let size = |k: usize| {
+        let mut size = [1.0; 3];
+        for d in 0..dimension {
+            size[d] = array.get(d, k);
+        }
+        size
+    };
+    let good = |size: &[f64; 3]| size.iter().all(|edge| *edge > 0.0 && edge.is_finite());
+    if let Some(k) = (0..n).find(|k| !good(&size(*k))) {
+        return Err(Error::invalid(format!(
+            "size of particle {k} must be positive and finite [m], got {:?}",
+            &size(k)[..dimension]
+        )));
+    }
+    if point == 0 {
+        return Ok(Sizes::Uniform(size(0)));
+    }
+    let mut all = Vec::new();
+    reserve(&mut all, n, "the sizes of particles")?;
+    all.extend((0..n).map(size));
+    Ok(Sizes::Each(all))
 }
 
 /// Fills the state with initial values and lets the model derive it from stress and density.

@@ -130,4 +130,6 @@ pub struct ParticleArrays<'a> {
     pub velocity: Option<Strided<'a>>,
     /// Cauchy stresses [Pa], 6 components; None: no stress.
     pub stress: Option<Strided<'a>>,
+    /// Edge lengths of the particles' domains [m], D components; None: not known.
+    pub size: Option<Strided<'a>>,
 }

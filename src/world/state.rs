@@ -48,6 +48,28 @@ impl<const D: usize> Space<D> {
     }
 }
 
+/// Edge lengths of the domains of a body's particles when it was added [m]; in two dimensions the third is 1.
+#[derive(Clone, Debug)]
+pub enum Sizes {
+    /// The host gave none.
+    Unknown,
+    /// The same for all.
+    Uniform([f64; 3]),
+    /// By id.
+    Each(Vec<[f64; 3]>),
+}
+
+impl Sizes {
+    /// Edge lengths of the particle with this id [m]; None if they are not known.
+    pub fn of(&self, id: i64) -> Option<[f64; 3]> {
+        match self {
+            Self::Unknown => None,
+            Self::Uniform(size) => Some(*size),
+            Self::Each(sizes) => sizes.get(usize::try_from(id).ok()?).copied(),
+        }
+    }
+}
+
 /// A body: particles of one material.
 pub struct Body {
     /// Id, never reused.
@@ -58,6 +80,8 @@ pub struct Body {
     pub particles: Particles,
     /// Particles of each block.
     pub runs: Vec<Run>,
+    /// Edge lengths of the particles at first.
+    pub sizes: Sizes,
 }
 
 /// A wall with its id and the force that it put on the material in the last step [N].
@@ -224,7 +248,7 @@ impl<const D: usize> State<D> {
         let Self { bodies, grid, options, kernels, context, time, parallel, stopwatch, .. } = self;
         let mut outcome = Outcome::default();
         for body in bodies {
-            let Body { id, material, particles, runs } = body;
+            let Body { id, material, particles, runs, .. } = body;
             let (ids, all) = particles.ids_and_chunk();
             let on_task = |task: ChunkMut<'_>| {
                 if *parallel {

@@ -92,6 +92,7 @@ pub fn add_points(
         density,
         velocity: Some(Strided::interleaved(velocity, d).expect("whole points")),
         stress: None,
+        size: None,
     };
     world.add_particles(material, &arrays).expect("good particles")
 }
