@@ -10,7 +10,7 @@ use super::entry::{entry, quiet_entry};
 use super::status::lahar_status;
 use crate::error::{Error, Result};
 use crate::grid::GridPolicy;
-use crate::shape::ShapeKind;
+use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::StepOrder;
 use crate::transfer::TransferKind;
 use crate::world::World;
@@ -26,18 +26,43 @@ pub struct lahar_world {
 pub const LAHAR_SHAPE_LINEAR: i32 = 0;
 /// Shape functions: quadratic B-splines (default).
 pub const LAHAR_SHAPE_QUADRATIC_BSPLINE: i32 = 1;
+/// Shape functions: cubic B-splines.
+pub const LAHAR_SHAPE_CUBIC_BSPLINE: i32 = 2;
+/// Shape functions: uniform GIMP, linear functions averaged over the particle's domain, which keeps its size. Bodies from arrays must
+/// give the sizes of their particles.
+pub const LAHAR_SHAPE_UNIFORM_GIMP: i32 = 3;
+/// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of the particle (F = R U), at most to the
+/// spacing.
+pub const LAHAR_SHAPE_CONTIGUOUS_GIMP: i32 = 4;
+/// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it (default).
+pub const LAHAR_WALLS_PLAIN: i32 = 0;
+/// Next to walls shape functions are modified: linear fields are reproduced up to the wall, where the node on it alone counts. Walls must
+/// stand on node planes, at most one on each side of an axis, and particles between them.
+pub const LAHAR_WALLS_MODIFIED: i32 = 1;
 /// Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
 pub const LAHAR_TRANSFER_PIC_FLIP: i32 = 0;
 /// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
 pub const LAHAR_TRANSFER_APIC: i32 = 1;
+/// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient; any shape function.
+pub const LAHAR_TRANSFER_TPIC: i32 = 2;
+/// Transfer between particles and grid: APIC with the forces and gradients of moving least squares (MLS-MPM); B-splines.
+pub const LAHAR_TRANSFER_MLS: i32 = 3;
+/// Transfer between particles and grid: extended (XPIC) of order `filter_order`.
+pub const LAHAR_TRANSFER_XPIC: i32 = 4;
+/// Transfer between particles and grid: full-mass-matrix (FMPM) of order `filter_order`.
+pub const LAHAR_TRANSFER_FMPM: i32 = 5;
 /// Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
 /// from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
 /// touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
-/// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; quadratic shapes have no such trouble.
+/// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such trouble.
 pub const LAHAR_ORDER_USL: i32 = 0;
 /// Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
 /// second time, with the same weights, and velocity gradients and stresses come from those.
 pub const LAHAR_ORDER_MUSL: i32 = 1;
+/// Order of a step: update stress first, from the velocities at the start of the step.
+pub const LAHAR_ORDER_USF: i32 = 2;
+/// Order of a step: half of the stress update first, half last; keeps energy best, for twice the calls of the material.
+pub const LAHAR_ORDER_USAVG: i32 = 3;
 /// Grid: blocks come and go with the particles (default).
 pub const LAHAR_GRID_DYNAMIC: i32 = 0;
 /// Grid: blocks come with the particles and stay.
@@ -49,10 +74,21 @@ pub const LAHAR_GRID_STATIC: i32 = 2;
 const _: () = {
     assert!(LAHAR_SHAPE_LINEAR == ShapeKind::Linear as i32);
     assert!(LAHAR_SHAPE_QUADRATIC_BSPLINE == ShapeKind::QuadraticBspline as i32);
+    assert!(LAHAR_SHAPE_CUBIC_BSPLINE == ShapeKind::CubicBspline as i32);
+    assert!(LAHAR_SHAPE_UNIFORM_GIMP == ShapeKind::UniformGimp as i32);
+    assert!(LAHAR_SHAPE_CONTIGUOUS_GIMP == ShapeKind::ContiguousGimp as i32);
+    assert!(LAHAR_WALLS_PLAIN == WallTreatment::Plain as i32);
+    assert!(LAHAR_WALLS_MODIFIED == WallTreatment::Modified as i32);
     assert!(LAHAR_TRANSFER_PIC_FLIP == TransferKind::PicFlip as i32);
     assert!(LAHAR_TRANSFER_APIC == TransferKind::Apic as i32);
+    assert!(LAHAR_TRANSFER_TPIC == TransferKind::Tpic as i32);
+    assert!(LAHAR_TRANSFER_MLS == TransferKind::Mls as i32);
+    assert!(LAHAR_TRANSFER_XPIC == TransferKind::Xpic as i32);
+    assert!(LAHAR_TRANSFER_FMPM == TransferKind::Fmpm as i32);
     assert!(LAHAR_ORDER_USL == StepOrder::Usl as i32);
     assert!(LAHAR_ORDER_MUSL == StepOrder::Musl as i32);
+    assert!(LAHAR_ORDER_USF == StepOrder::Usf as i32);
+    assert!(LAHAR_ORDER_USAVG == StepOrder::Usavg as i32);
     assert!(LAHAR_GRID_DYNAMIC == GridPolicy::Dynamic as i32);
     assert!(LAHAR_GRID_GROW_ONLY == GridPolicy::GrowOnly as i32);
     assert!(LAHAR_GRID_STATIC == GridPolicy::Static as i32);
@@ -64,7 +100,7 @@ const _: () = {
 pub struct lahar_world_options {
     /// sizeof(lahar_world_options); set by lahar_world_options_init.
     pub struct_size: u32,
-    /// 2 (plane strain) or 3; default 3.
+    /// 2 (plane strain, or see `axisymmetric`) or 3; default 3.
     pub dimension: i32,
     /// One of LAHAR_SHAPE_*.
     pub shape: i32,
@@ -91,6 +127,15 @@ pub struct lahar_world_options {
     pub box_min: [f64; 3],
     /// Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     pub box_max: [f64; 3],
+    /// One of LAHAR_WALLS_*.
+    pub wall_treatment: i32,
+    /// 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
+    pub axisymmetric: i32,
+    /// Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
+    /// 0: the default, 2.
+    pub filter_order: i32,
+    /// 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
+    pub body_force: i32,
 }
 
 // SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers only.
@@ -131,6 +176,10 @@ fn from_options(options: &Options) -> lahar_world_options {
         damping: options.damping,
         box_min: options.box_min,
         box_max: options.box_max,
+        wall_treatment: options.wall_treatment as i32,
+        axisymmetric: i32::from(options.axisymmetric),
+        filter_order: options.filter_order,
+        body_force: i32::from(options.body_force),
     }
 }
 
@@ -158,7 +207,19 @@ fn to_options(options: &lahar_world_options) -> Result<Options> {
         grid_policy: GridPolicy::from_i32(options.grid_policy)?,
         box_min: vector(options.box_min),
         box_max: vector(options.box_max),
+        wall_treatment: WallTreatment::from_i32(options.wall_treatment)?,
+        axisymmetric: flag(options.axisymmetric, "axisymmetric")?,
+        filter_order: if options.filter_order == 0 { 2 } else { options.filter_order },
+        body_force: flag(options.body_force, "body_force")?,
     })
+}
+
+fn flag(value: i32, name: &str) -> Result<bool> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => Err(Error::invalid(format!("`{name}` is {other}; expected 0 (no) or 1 (yes)"))),
+    }
 }
 
 /// Makes an empty world at time 0.
@@ -166,7 +227,7 @@ fn to_options(options: &lahar_world_options) -> Result<Options> {
 /// `options`: copied.
 /// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
-/// static grid).
+/// static grid), LAHAR_ERROR_UNSUPPORTED (options that do not go together; the text names the nearest that do).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_create(

@@ -56,12 +56,14 @@ impl<'a> ChunkMut<'a> {
         let (motion, rest) = self.columns.split_at_mut(layout.mass);
         let (position, velocity) = motion.split_at_mut(layout.velocity);
         let (others, affine) = rest.split_at_mut(layout.affine - layout.mass);
-        let rows = if layout.deformation_gradient > layout.affine { D } else { 0 };
-        let mut rows = affine[..rows * D].chunks_exact_mut(D);
+        let (affine, rest) = affine.split_at_mut(layout.filtered - layout.affine);
+        let filtered = &mut rest[..layout.deformation_gradient - layout.filtered];
+        let mut rows = affine.chunks_exact_mut(D);
         Motion {
             position: parts(position, first, end),
             velocity: parts(velocity, first, end),
             affine: std::array::from_fn(|_| parts(rows.next().unwrap_or_default(), first, end)),
+            filtered: parts(filtered, first, end),
             others,
             first,
         }
@@ -138,11 +140,19 @@ pub struct Motion<'a, const D: usize> {
     pub velocity: [&'a mut [f64]; D],
     /// Rows of the affine matrix [1/s]; empty if there is none.
     pub affine: [[&'a mut [f64]; D]; D],
+    /// Velocity on its way through a filter [m/s]; empty if there is none.
+    pub filtered: [&'a mut [f64]; D],
     others: &'a [&'a mut [f64]],
     first: usize,
 }
 
 impl<const D: usize> Motion<'_, D> {
+    /// Column c behind the velocity, of the particles of the range.
+    #[inline(always)]
+    pub fn other(&self, c: usize) -> &[f64] {
+        &self.others[c][self.first..]
+    }
+
     /// Asks the memory for the particles from k on: for what a gather writes, and for what the next stages read.
     #[inline(always)]
     pub fn prefetch(&self, k: usize) {

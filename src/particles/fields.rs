@@ -34,8 +34,14 @@ pub struct Layout {
     pub stress: usize,
     /// Strain energy [J].
     pub strain_energy: usize,
-    /// Affine velocity matrix of APIC [1/s], D·D components, row-major; none in other transfers.
+    /// Edge lengths of the domain [m], D components; none unless the shape function is sized.
+    pub size: usize,
+    /// Body force per mass [N/kg], D components; none unless the world has it.
+    pub body_force: usize,
+    /// Affine velocity matrix [1/s], D·D components, row-major; none unless the transfer is affine.
     pub affine: usize,
+    /// Velocity on its way through a filter [m/s], D components; none unless the transfer is filtered.
+    pub filtered: usize,
     /// Deformation gradient [–], 9 components, row-major; none unless the model asks for it.
     pub deformation_gradient: usize,
     /// State variables of the model.
@@ -43,9 +49,27 @@ pub struct Layout {
     end: usize,
 }
 
+/// What a body carries beside what all have.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras {
+    /// Edge lengths of the domain.
+    pub size: bool,
+    /// Body force.
+    pub body_force: bool,
+    /// Affine matrix.
+    pub affine: bool,
+    /// Filtered velocity.
+    pub filtered: bool,
+    /// Deformation gradient.
+    pub gradient: bool,
+    /// Components of the model's state.
+    pub state: usize,
+}
+
 impl Layout {
     /// Columns of a body in `dimension` axes.
-    pub fn new(dimension: usize, affine: bool, gradient: bool, state: usize) -> Self {
+    pub fn new(dimension: usize, extras: &Extras) -> Self {
+        let Extras { size, body_force, affine, filtered, gradient, state } = *extras;
         let mut end = 0;
         let mut take = |components: usize| {
             end += components;
@@ -58,7 +82,10 @@ impl Layout {
             volume: take(1),
             stress: take(6),
             strain_energy: take(1),
+            size: take(if size { dimension } else { 0 }),
+            body_force: take(if body_force { dimension } else { 0 }),
             affine: take(if affine { dimension * dimension } else { 0 }),
+            filtered: take(if filtered { dimension } else { 0 }),
             deformation_gradient: take(if gradient { 9 } else { 0 }),
             state: take(state),
             end: 0,
@@ -104,9 +131,17 @@ impl Layout {
                 true,
             ),
         ];
-        let affine = self.deformation_gradient - self.affine;
+        if self.body_force > self.size {
+            let text = c"Edge lengths of the particle's domain";
+            list.push(field(c"size", c"m", text, self.size, dimension, true));
+        }
+        if self.affine > self.body_force {
+            let text = c"Body force per mass, added to gravity";
+            list.push(field(c"body_force", c"N/kg", text, self.body_force, dimension, true));
+        }
+        let affine = self.filtered - self.affine;
         if affine > 0 {
-            let text = c"Affine velocity matrix of APIC, row-major";
+            let text = c"Affine velocity matrix, row-major";
             list.push(field(c"affine", c"1/s", text, self.affine, affine, true));
         }
         if self.state > self.deformation_gradient {

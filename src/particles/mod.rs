@@ -9,7 +9,7 @@ pub mod moves;
 pub mod seeding;
 
 pub use chunk::{CHUNK, ChunkMut, Motion, for_each_task};
-pub use fields::{FieldInfo, Layout};
+pub use fields::{Extras, FieldInfo, Layout};
 pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 
 use rayon::prelude::*;

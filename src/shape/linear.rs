@@ -1,6 +1,6 @@
 //! Linear shape function: w(r) = 1 − |r| on |r| < 1, r in units of the spacing.
 
-use super::stencil::{Axis, ShapeFunction};
+use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
 
 /// Piecewise linear hat function.
@@ -11,11 +11,11 @@ impl ShapeFunction<2> for Linear {
     const MOMENT: Option<f64> = None;
 
     #[inline(always)]
-    fn axis<R: Real>(xi: R) -> Axis<R, 2> {
+    fn axis<R: Real>(at: At<R>) -> Axis<R, 2> {
         let (one, least) = (R::splat(1.0), R::splat(f64::EPSILON));
-        let first = xi.floor();
+        let first = at.xi.floor();
         // On a node plane the far node would have no mass and hence no velocity, but its slope would still count.
-        let f = (xi - first).max(least).min(one - least);
-        Axis { first, fraction: f, w: [one - f, f], dw: [-one, one] }
+        let f = (at.xi - first).max(least).min(one - least);
+        Axis { first, fraction: f, w: [one - f, f], dw: [-one, one] } // [SHP-1]
     }
 }

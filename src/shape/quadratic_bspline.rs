@@ -2,7 +2,7 @@
 //!
 //! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360.
 
-use super::stencil::{Axis, ShapeFunction};
+use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
 
 /// Quadratic B-spline.
@@ -13,15 +13,15 @@ impl ShapeFunction<3> for QuadraticBspline {
     const MOMENT: Option<f64> = Some(0.25);
 
     #[inline(always)]
-    fn axis<R: Real>(xi: R) -> Axis<R, 3> {
+    fn axis<R: Real>(at: At<R>) -> Axis<R, 3> {
         let half = R::splat(0.5);
-        let first = (xi - half).floor();
-        let f = xi - first; // in [½, 3/2)
+        let first = (at.xi - half).floor();
+        let f = at.xi - first; // in [½, 3/2)
         let (a, b, c) = (R::splat(1.5) - f, f - R::splat(1.0), f - half);
         Axis {
             first,
             fraction: f,
-            w: [half * a * a, R::splat(0.75) - b * b, half * c * c],
+            w: [half * a * a, R::splat(0.75) - b * b, half * c * c], // [SHP-3]
             dw: [-a, -(b + b), c],
         }
     }

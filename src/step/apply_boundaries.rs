@@ -44,10 +44,17 @@ pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
 
 /// Turns the momentum of the second scatter (R1) into velocity and applies the walls to it.
 pub fn apply_boundaries_again<const D: usize>(world: &mut State<D>) {
-    for_each_block(world, |space, key, walls, r0, r1, _| {
+    for_each_block(world, |_, _, _, r0, r1, _| {
         for (r0, r1) in r0.iter().zip(r1.iter_mut()) {
             *r1 = if r0[0] > 0.0 { r1.map(|momentum| momentum / r0[0]) } else { [0.0; 4] };
         }
+    });
+    hold_at_boundaries(world);
+}
+
+/// Applies the walls to the velocities in R1.
+pub fn hold_at_boundaries<const D: usize>(world: &mut State<D>) {
+    for_each_block(world, |space, key, walls, _, r1, _| {
         for entry in walls {
             for_reached_nodes(&entry.wall, space, key, |n| {
                 constrain::<D>(&entry.wall, &mut r1[n]);

@@ -11,10 +11,11 @@ use crate::grid::key::EDGE;
 use crate::grid::tiles::{TileNode, load_tile};
 use crate::grid::{Grid, Key, Lanes, Run};
 use crate::particles::{CHUNK, ChunkMut, Motion};
-use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::shape::modified::is_modified;
+use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each};
-use crate::transfer::{Received, TransferKind, apic, pic_flip};
+use crate::transfer::{Received, TransferKind, apic, pic_flip, tpic};
 use crate::world::state::{ChunkStage, Piece, Space};
 
 /// What a gather updates.
@@ -26,6 +27,29 @@ pub enum Gather {
     Velocity,
     /// Position from R0, gradient from the second velocities in R1 (last gather of MUSL).
     PositionAndGradient,
+    /// The gradient alone, from R0 (first gather of USF).
+    Gradient,
+    /// Velocity and position, as [`Gather::Everything`] without the gradient (last gather of USF).
+    Motion,
+    /// Σ w R1, to be mapped to the grid again by a filter.
+    Filter,
+}
+
+impl Gather {
+    /// Whether particles take a velocity.
+    const fn velocity(self) -> bool {
+        matches!(self, Self::Everything | Self::Velocity | Self::Motion)
+    }
+
+    /// Whether particles move.
+    const fn position(self) -> bool {
+        matches!(self, Self::Everything | Self::PositionAndGradient | Self::Motion)
+    }
+
+    /// Whether velocity gradients are wanted.
+    const fn gradient(self) -> bool {
+        matches!(self, Self::Everything | Self::PositionAndGradient | Self::Gradient)
+    }
 }
 
 /// Everything a gather needs beside the chunk.
@@ -49,6 +73,10 @@ pub struct GatherJob<'a, const D: usize> {
     pub dt: f64,
     /// Distance between components of the gradient.
     pub stride: usize,
+    /// Where the sizes of the particles start among the columns behind the velocity.
+    pub size: usize,
+    /// Whether x is a radius, and the gradient has a hoop component v_r / r.
+    pub axisymmetric: bool,
 }
 
 impl<'a, const D: usize> GatherJob<'a, D> {
@@ -95,6 +123,8 @@ pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gat
         pic_share: pic_flip::pic_share(piece.pic_rate, dt),
         dt,
         stride: scratch.stride,
+        size: chunk.layout.size - chunk.layout.mass,
+        axisymmetric: piece.axisymmetric,
     };
     (piece.gather)(&job, (tile, loaded), chunk, scratch.velocity_gradient);
     piece.lap(ChunkStage::Gathered);
@@ -134,7 +164,7 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherChunk
             let range = (first.max(run.first as usize) - first, end.min(run.end as usize) - first);
             let mut marks = [0; CHUNK / LANES];
             let mut motion = chunk.motion::<D>(range);
-            let mut gradient = rows_of_gradient(gradient, job.stride, range);
+            let mut gradient = Gradient::new(gradient, job.stride, range);
             for start in (0..range.1 - range.0).step_by(BATCH) {
                 let count = BATCH.min(range.1 - range.0 - start);
                 batch.set::<V, S>(job, &motion, key, (start, count));
@@ -158,17 +188,23 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherChunk
     }
 }
 
-/// The rows of the velocity gradient of the particles in a range.
-fn rows_of_gradient<const D: usize>(
-    gradient: &mut [f64],
-    stride: usize,
-    (first, end): (usize, usize),
-) -> [[&mut [f64]; D]; D] {
-    let mut rows = gradient.chunks_exact_mut(3 * stride);
-    std::array::from_fn(|_| {
-        let mut row = rows.next().unwrap_or_default().chunks_exact_mut(stride);
-        std::array::from_fn(|_| &mut row.next().unwrap_or_default()[first..end])
-    })
+/// The velocity gradient of the particles in a range: its rows, and its last component, which is that of the hoop in axial symmetry.
+struct Gradient<'a, const D: usize> {
+    rows: [[&'a mut [f64]; D]; D],
+    hoop: &'a mut [f64],
+}
+
+impl<'a, const D: usize> Gradient<'a, D> {
+    fn new(gradient: &'a mut [f64], stride: usize, (first, end): (usize, usize)) -> Self {
+        let (gradient, hoop) = gradient.split_at_mut(if D == 2 { 8 * stride } else { 9 * stride });
+        let hoop = if D == 2 { &mut hoop[first..end] } else { hoop };
+        let mut rows = gradient.chunks_mut(3 * stride);
+        let rows = std::array::from_fn(|_| {
+            let mut row = rows.next().unwrap_or_default().chunks_exact_mut(stride);
+            std::array::from_fn(|_| &mut row.next().unwrap_or_default()[first..end])
+        });
+        Self { rows, hoop }
+    }
 }
 
 /// How many particles before its use a line of a column is asked for, here and in the stages that follow.
@@ -199,8 +235,13 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             let end = (start + count).min(k + LANES);
             motion.prefetch(k + AHEAD);
             let x: [V; D] = each!(d in D => V::load(&motion.position[d][k..end]));
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
-            self.weights[g].set(&stencil, job.transfer.is_affine());
+            let mut size = [V::splat(0.0); D];
+            if S::SIZED {
+                size = each!(d in D => V::load(&motion.other(job.size + d)[k..end]));
+            }
+            let stencil = Stencil::<V, N, D>::new::<S>(job.space.at(x, size));
+            let mls = if job.transfer == TransferKind::Mls { S::MOMENT } else { None };
+            self.weights[g].set(&stencil, job.transfer.is_affine(), mls.map(f64::recip));
             self.corners[g] = corners(&stencil, key);
         }
     }
@@ -258,18 +299,21 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     key: Key<D>,
     received: &Received<V, D>,
-    (motion, gradient): (&mut Motion<'_, D>, &mut [[&mut [f64]; D]; D]),
+    (motion, gradient): (&mut Motion<'_, D>, &mut Gradient<'_, D>),
     (k, end): (usize, usize),
 ) -> u8 {
-    if job.what != Gather::PositionAndGradient {
-        let mut v = received.velocity;
+    let old = each!(a in D => V::load(&motion.position[a][k..end]));
+    if job.what.velocity() {
+        let mut v = received.velocity; // [TRF-1]
         if job.transfer.is_affine() {
-            let c = apic::affine(received, S::MOMENT, job.space.spacing);
+            let c = affine::<V, S, N, D>(job, old, received);
             for a in 0..D {
                 for b in 0..D {
                     c[a][b].store(&mut motion.affine[a][b][k..end]);
                 }
             }
+        } else if job.transfer.is_filtered() {
+            v = received.increment; // [TRF-6]
         } else {
             let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
             v = pic_flip::velocity(old, received, job.pic_share);
@@ -278,19 +322,49 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
             v[a].store(&mut motion.velocity[a][k..end]);
         }
     }
-    if job.what == Gather::Velocity {
-        return 0;
-    }
-    let mut x = received.velocity;
-    for a in 0..D {
-        let old = V::load(&motion.position[a][k..end]);
-        x[a] = V::splat(job.dt).mul_add(x[a], old);
-        x[a].store(&mut motion.position[a][k..end]);
-        for b in 0..D {
-            received.gradient[a][b].store(&mut gradient[a][b][k..end]);
+    if job.what.gradient() {
+        for a in 0..D {
+            for b in 0..D {
+                received.gradient[a][b].store(&mut gradient.rows[a][b][k..end]);
+            }
+        }
+        if job.axisymmetric {
+            let of_r1 = job.gradient_lane() == 5;
+            let v = if of_r1 { received.increment[0] } else { received.velocity[0] };
+            (v / old[0]).store(&mut gradient.hoop[k..end]); // [AXI-2]
         }
     }
+    if job.what == Gather::Filter {
+        for a in 0..D {
+            received.increment[a].store(&mut motion.filtered[a][k..end]);
+        }
+    }
+    if !job.what.position() {
+        return 0;
+    }
+    let x = each!(a in D => V::splat(job.dt).mul_add(received.velocity[a], old[a])); // [G2P-2]
+    for a in 0..D {
+        x[a].store(&mut motion.position[a][k..end]);
+    }
     outside(job, key, x, end - k)
+}
+
+/// Affine matrices of eight particles at `x`.
+#[inline(always)]
+fn affine<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+    job: &GatherJob<'_, D>,
+    x: [V; D],
+    received: &Received<V, D>,
+) -> [[V; D]; D] {
+    if job.transfer == TransferKind::Tpic {
+        return tpic::affine(received);
+    }
+    let mut modified = None;
+    if S::MODIFIED {
+        let (xi, walls) = (job.space.to_units(x), &job.space.walls);
+        modified = Some(each!(d in D => is_modified::<V, S, N>(xi[d], walls[d].map(V::splat))));
+    }
+    apic::affine(received, S::MOMENT, job.space.spacing, modified)
 }
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.
@@ -351,11 +425,11 @@ fn load_row<V: Vector, const N: usize>(nodes: &[TileNode]) -> [V; N] {
 /// Nodes of a stencil that a host's point sees: calls `visit` with node number and weight; false if a node is missing.
 pub fn for_stencil_nodes<S: ShapeFunction<N>, const N: usize, const D: usize>(
     grid: &Grid<D>,
-    xi: [f64; D],
+    at: [At<f64>; D],
     visit: &mut dyn FnMut(usize, f64),
 ) -> bool {
     let mut complete = true;
-    Stencil::<f64, N, D>::new::<S>(xi).nodes(|index, w, _| match grid.find_node(index) {
+    Stencil::<f64, N, D>::new::<S>(at).nodes(|index, w, _| match grid.find_node(index) {
         Some(node) => visit(node, w),
         None => complete = false,
     });

@@ -7,6 +7,7 @@
 //! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
 //! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
 //! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
+//! | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
 //! | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
 //! | update the strain | Δε_p, V_p, rotated σ_p | [`update_strain`](mod@update_strain) |
 //! | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
@@ -14,6 +15,7 @@
 //! The last three go over a chunk of particles while it is in cache. [`naive`] is the same step as the textbook writes it.
 
 pub mod apply_boundaries;
+pub mod filter_velocities;
 pub mod grid_to_particles;
 pub mod locate;
 pub mod naive;
@@ -28,9 +30,10 @@ use crate::world::hooks::HookPoint;
 use crate::world::state::State;
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
+use filter_velocities::filter_velocities;
 use grid_to_particles::{Gather, grid_to_particles};
 use locate::locate;
-use particles_to_grid::{particles_to_grid, velocities_to_grid};
+use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
 use time_step::Limits;
 use update_grid::update_grid;
 use update_strain::update_strain;
@@ -44,16 +47,23 @@ pub enum StepOrder {
     Usl = 0,
     /// Modified update stress last: the velocity gradient comes from particle velocities mapped a second time.
     Musl = 1,
+    /// Update stress first.
+    Usf = 2,
+    /// Half of the stress update first, half last.
+    Usavg = 3,
 }
 
 impl StepOrder {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Usl, Self::Musl, Self::Usf, Self::Usavg];
+
     /// The order with this number.
     pub fn from_i32(value: i32) -> Result<Self> {
-        match value {
-            0 => Ok(Self::Usl),
-            1 => Ok(Self::Musl),
-            _ => Err(Error::invalid(format!("order must be 0 (USL) or 1 (MUSL), got {value}"))),
-        }
+        Self::ALL.into_iter().find(|order| *order as i32 == value).ok_or_else(|| {
+            Error::invalid(format!(
+                "order must be 0 (USL), 1 (MUSL), 2 (USF) or 3 (USAVG), got {value}"
+            ))
+        })
     }
 }
 
@@ -64,19 +74,27 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
     let outcome = match world.options.order {
         StepOrder::Usl => usl(world, dt),
         StepOrder::Musl => musl(world, dt),
+        StepOrder::Usf => usf(world, dt),
+        StepOrder::Usavg => usavg(world, dt),
     };
     world.hook(HookPoint::End, dt);
     outcome.limits()
 }
 
-/// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118 (1994) 179–196,
-/// doi:10.1016/0045-7825(94)90112-0.
-fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+/// From particles to the new velocities of the grid: what all orders have in common.
+fn move_grid<const D: usize>(world: &mut State<D>, dt: f64) {
     particles_to_grid(world);
     world.hook(HookPoint::AfterScatter, dt);
     update_grid(world, dt);
     apply_boundaries(world, dt);
     world.hook(HookPoint::AfterBoundaries, dt);
+    filter_velocities(world);
+}
+
+/// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118 (1994) 179–196,
+/// doi:10.1016/0045-7825(94)90112-0.
+fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    move_grid(world, dt);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Everything, dt);
         update_strain(piece, dt);
@@ -88,19 +106,49 @@ fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
 /// gradient is taken of those. (Without the affine part the gradient would come of a field filtered twice and positions of one filtered
 /// once: sand would swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
 fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
-    particles_to_grid(world);
-    world.hook(HookPoint::AfterScatter, dt);
-    update_grid(world, dt);
-    apply_boundaries(world, dt);
-    world.hook(HookPoint::AfterBoundaries, dt);
+    move_grid(world, dt);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Velocity, dt);
         Outcome::default()
     });
-    velocities_to_grid(world);
+    velocities_to_grid(world, Scattered::Momentum);
     apply_boundaries_again(world);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::PositionAndGradient, dt);
+        update_strain(piece, dt);
+        update_stress(piece, dt)
+    })
+}
+
+/// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180 (2002) 383–403, doi:10.1006/jcph.2002.7103.
+fn usf<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    let outcome = stress_of_start(world, dt);
+    move_grid(world, dt);
+    world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::Motion, dt);
+        Outcome::default()
+    });
+    outcome
+}
+
+/// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn, CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
+fn usavg<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    let outcome = stress_of_start(world, 0.5 * dt);
+    move_grid(world, dt);
+    outcome.merge(world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::Everything, dt);
+        update_strain(piece, 0.5 * dt);
+        update_stress(piece, 0.5 * dt)
+    }))
+}
+
+/// Updates the stress over `dt` from the velocities that the particles have.
+fn stress_of_start<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+    particles_to_grid(world);
+    update_grid(world, 0.0);
+    apply_boundaries(world, dt);
+    world.for_each_chunk(|piece| {
+        grid_to_particles(piece, Gather::Gradient, dt);
         update_strain(piece, dt);
         update_stress(piece, dt)
     })

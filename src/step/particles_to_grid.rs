@@ -21,6 +21,7 @@ use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
+use crate::transfer::TransferKind;
 use crate::world::state::{Body, Space, State};
 
 /// What a scatter needs beside the tiles that it fills.
@@ -38,8 +39,23 @@ pub struct ScatterJob<'a, const D: usize> {
     pub runs: &'a [Run],
     /// For each tile to fill its runs, as a range of `runs`.
     pub tiles: &'a [(u32, u32)],
-    /// Whether the stresses give forces.
-    pub forces: bool,
+    /// What to map.
+    pub what: Scattered,
+    /// The inverse of Σ w r² in units of h², if forces take the form of moving least squares.
+    pub mls: bool,
+    /// Whether x is a radius, and hoop stresses push along it.
+    pub axisymmetric: bool,
+}
+
+/// What a scatter maps beside the mass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scattered {
+    /// Momentum and forces.
+    Everything,
+    /// Momentum alone.
+    Momentum,
+    /// The momentum of the filtered velocities.
+    Filtered,
 }
 
 /// The scatter of all particles of some tiles that stand one after the other.
@@ -47,7 +63,7 @@ pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
 
 /// Maps mass, momentum and the forces of the stresses to the grid.
 pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
-    scatter(world, true);
+    scatter(world, Scattered::Everything);
     let State { grid, tiles, parallel, context, .. } = world;
     let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
     let pull = |(n, (low, high)): (usize, (&mut [Lanes], &mut [Lanes]))| {
@@ -62,9 +78,9 @@ pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
     }
 }
 
-/// Maps the new momentum of the particles into R1 (second scatter of MUSL).
-pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
-    scatter(world, false);
+/// Maps the momentum of the particles into R1: that of their new velocities (second scatter of MUSL), or of those that go through a filter.
+pub fn velocities_to_grid<const D: usize>(world: &mut State<D>, what: Scattered) {
+    scatter(world, what);
     let State { grid, tiles, parallel, context, .. } = world;
     let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
     let pull = |(n, low): (usize, &mut [Lanes])| {
@@ -78,9 +94,9 @@ pub fn velocities_to_grid<const D: usize>(world: &mut State<D>) {
 }
 
 /// Fills the tiles.
-fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
+fn scatter<const D: usize>(world: &mut State<D>, what: Scattered) {
     let (space, kernel) = (world.space(), world.kernels.scatter);
-    let State { bodies, grid, tiles, context, .. } = world;
+    let State { bodies, grid, tiles, context, options, .. } = world;
     let nodes = tiles.tile_nodes(D);
     let fill = |part: &mut [TileNode], first: usize| {
         let job = ScatterJob {
@@ -90,7 +106,9 @@ fn scatter<const D: usize>(world: &mut State<D>, forces: bool) {
             space: &space,
             runs: &tiles.runs,
             tiles: &tiles.tiles[first..first + part.len() / nodes],
-            forces,
+            what,
+            mls: options.transfer == TransferKind::Mls,
+            axisymmetric: options.axisymmetric,
         };
         kernel(&job, part);
     };
@@ -217,7 +235,8 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterTile
             tile.fill(TileNode::default());
             for run in &job.runs[*first as usize..*end as usize] {
                 let particles = &job.bodies[run.body as usize].particles;
-                let (columns, key) = (Columns::new(particles, run), job.keys[run.block as usize]);
+                let columns = Columns::new(particles, run, job.what);
+                let key = job.keys[run.block as usize];
                 let all = (run.end - run.first) as usize;
                 for start in (0..all).step_by(BATCH) {
                     let count = BATCH.min(all - start);
@@ -262,10 +281,15 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
     ) {
         columns.prefetch(k + AHEAD);
         let x = each!(d in D => V::load(&columns.position[d][k..k + LANES]));
-        let stencil = Stencil::<V, N, D>::new::<S>(job.space.to_units(x));
-        self.weights[g].set(&stencil, true);
+        let mut size = [V::splat(0.0); D];
+        if S::SIZED {
+            size = each!(d in D => V::load(&columns.size[d][k..k + LANES]));
+        }
+        let stencil = Stencil::<V, N, D>::new::<S>(job.space.at(x, size));
+        let mls = if job.mls { S::MOMENT } else { None };
+        self.weights[g].set(&stencil, true, mls.map(f64::recip));
         self.corners[g] = corners(&stencil, key);
-        (self.values[g], self.columns[g]) = payload(job, columns, k);
+        (self.values[g], self.columns[g]) = payload(job, columns, x[0], k);
     }
 
     /// Adds what the first `count` particles give to the tile.
@@ -291,21 +315,29 @@ struct Columns<'a, const D: usize> {
     volume: &'a [f64],
     stress: [&'a [f64]; 6],
     affine: Option<[[&'a [f64]; D]; D]>,
+    size: [&'a [f64]; D],
+    body_force: Option<[&'a [f64]; D]>,
 }
 
 impl<'a, const D: usize> Columns<'a, D> {
-    fn new(particles: &'a Particles, run: &Run) -> Self {
+    fn new(particles: &'a Particles, run: &Run, what: Scattered) -> Self {
         let layout = &particles.layout;
         let (first, end) = (run.first as usize, run.end as usize);
         let row = |a: usize| particles.read(layout.affine + a * D, first, end);
-        let affine = layout.deformation_gradient > layout.affine;
+        let velocity = if what == Scattered::Filtered { layout.filtered } else { layout.velocity };
+        let affine = layout.filtered > layout.affine;
+        let sized = layout.body_force > layout.size;
+        let body_force = layout.affine > layout.body_force && what == Scattered::Everything;
+        let vector = |component: usize| particles.read(component, first, end);
         Self {
             position: particles.read(layout.position, first, end),
-            velocity: particles.read(layout.velocity, first, end),
+            velocity: particles.read(velocity, first, end),
             mass: particles.read::<1>(layout.mass, first, end)[0],
             volume: particles.read::<1>(layout.volume, first, end)[0],
             stress: particles.read(layout.stress, first, end),
             affine: affine.then(|| std::array::from_fn(row)),
+            size: if sized { vector(layout.size) } else { [&[]; D] },
+            body_force: body_force.then(|| vector(layout.body_force)),
         }
     }
 
@@ -331,11 +363,12 @@ impl<'a, const D: usize> Columns<'a, D> {
     }
 }
 
-/// Values, and columns of affine matrix and stress, of eight particles from k on.
+/// Values, and columns of affine matrix and stress, of eight particles from k on; `radius` is their x.
 #[inline(always)]
 fn payload<V: Vector, const D: usize>(
     job: &ScatterJob<'_, D>,
     columns: &Columns<'_, D>,
+    radius: V,
     k: usize,
 ) -> ([V; LANES], [[V; LANES]; D]) {
     let zero = V::splat(0.0);
@@ -354,8 +387,18 @@ fn payload<V: Vector, const D: usize>(
             }
         }
     }
-    if job.forces {
-        let scale = V::load(&columns.volume[k..k + LANES]) * V::splat(-job.space.inverse);
+    if let Some(force) = &columns.body_force {
+        for a in 0..D {
+            value[5 + a] = mass * V::load(&force[a][k..k + LANES]); // [P2G-4]
+        }
+    }
+    if job.what == Scattered::Everything {
+        let volume = V::load(&columns.volume[k..k + LANES]);
+        if job.axisymmetric {
+            let hoop = V::load(&columns.stress[2][k..k + LANES]);
+            value[5] = value[5] - volume * hoop / radius; // [AXI-1]
+        }
+        let scale = volume * V::splat(-job.space.inverse);
         for d in 0..D {
             for a in 0..D {
                 let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];

@@ -38,6 +38,9 @@ fn gradient<V: Vector, const D: usize>(
             rows[a][b] = V::load(&l[first + k..first + end]);
         }
     }
+    if D == 2 {
+        rows[2][2] = V::load(&l[8 * stride + k..8 * stride + end]); // of the hoop
+    }
     rows
 }
 

@@ -3,7 +3,9 @@
 //! Every scheme shares one scatter, `w m (v + A r)`, and one gather; it differs in two per-particle formulas.
 
 pub mod apic;
+pub mod filter;
 pub mod pic_flip;
+pub mod tpic;
 
 use crate::error::{Error, Result};
 
@@ -15,25 +17,38 @@ pub enum TransferKind {
     PicFlip = 0,
     /// Affine particle-in-cell, see [`apic`].
     Apic = 1,
+    /// Taylor particle-in-cell, see [`tpic`].
+    Tpic = 2,
+    /// Affine particle-in-cell with the forces and gradients of moving least squares, see [`apic`].
+    Mls = 3,
+    /// Extended particle-in-cell, see [`filter`].
+    Xpic = 4,
+    /// Full-mass-matrix method, see [`filter`].
+    Fmpm = 5,
 }
 
 impl TransferKind {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::PicFlip, Self::Apic, Self::Tpic, Self::Mls, Self::Xpic, Self::Fmpm];
+
     /// The kind with this number.
     pub fn from_i32(value: i32) -> Result<Self> {
-        match value {
-            0 => Ok(Self::PicFlip),
-            1 => Ok(Self::Apic),
-            _ => Err(Error::invalid(format!(
-                "transfer must be 0 (PIC/FLIP) or 1 (APIC), got {value}"
-            ))),
-        }
+        Self::ALL.into_iter().find(|kind| *kind as i32 == value).ok_or_else(|| {
+            Error::invalid(format!(
+                "transfer must be 0 (PIC/FLIP), 1 (APIC), 2 (TPIC), 3 (MLS), 4 (XPIC) or 5 (FMPM), got {value}"
+            ))
+        })
     }
-}
 
-impl TransferKind {
     /// Whether particles carry an affine matrix.
-    pub fn is_affine(self) -> bool {
-        self == Self::Apic
+    pub const fn is_affine(self) -> bool {
+        matches!(self, Self::Apic | Self::Tpic | Self::Mls)
+    }
+
+    /// Whether particles take a filtered velocity.
+    pub const fn is_filtered(self) -> bool {
+        matches!(self, Self::Xpic | Self::Fmpm)
     }
 }
 
@@ -42,7 +57,7 @@ impl TransferKind {
 pub struct Received<R, const D: usize> {
     /// Σ w v.
     pub velocity: [R; D],
-    /// Σ w Δv; not meaningful if the transfer is affine.
+    /// Σ w Δv, or what else stands in R1; Σ w v again if the transfer is affine and R1 is not asked for.
     pub increment: [R; D],
     /// Σ w v ⊗ (x_i − x_p); only meaningful if the transfer is affine.
     pub moment: [[R; D]; D],

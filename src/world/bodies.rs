@@ -5,11 +5,12 @@ use std::sync::Arc;
 use crate::error::{Error, Place, Result};
 use crate::material::{Kinematics, Material};
 use crate::particles::seeding::{Fill, Region, fill};
-use crate::particles::{CHUNK, Layout, Particles, reserve};
+use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
+use crate::shape::ShapeKind;
 use crate::step::locate::FARTHEST;
-use crate::transfer::TransferKind;
 
 use super::host_arrays::{ParticleArrays, Strided, Strides};
+use super::options::Options;
 use super::scratch::with_scratch;
 use super::state::{Body, Sizes, State};
 
@@ -34,11 +35,18 @@ impl<const D: usize> State<D> {
                 arrays.density
             )));
         }
-        let gradient = material.model().kinematics == Kinematics::DeformationGradient;
-        let affine = self.options.transfer == TransferKind::Apic;
-        let state = material.model().state_components();
-        let mut particles = Particles::new(Layout::new(D, affine, gradient, state), n)?;
+        let sizes = sizes(arrays, n, D)?;
+        let extras = self.extras(material);
+        if extras.size && matches!(sizes, Sizes::Unknown) {
+            return Err(Error::invalid(
+                "GIMP shape functions need the sizes of particles: give `size`, the edge lengths of their domains [m]",
+            ));
+        }
+        let mut particles = Particles::new(Layout::new(D, &extras), n)?;
         let layout = particles.layout;
+        if let (true, Some(size)) = (extras.size, &arrays.size) {
+            copy(&mut particles, layout.size, size, "size", D)?;
+        }
         copy(&mut particles, layout.position, &arrays.position, "position", D)?;
         copy(&mut particles, layout.volume, &arrays.volume, "volume", 1)?;
         if let Some(velocity) = &arrays.velocity {
@@ -55,12 +63,11 @@ impl<const D: usize> State<D> {
                 }
             }
         }
-        if gradient {
+        if extras.gradient {
             for c in [0, 4, 8] {
                 particles.column_mut(layout.deformation_gradient + c).fill(1.0);
             }
         }
-        let sizes = sizes(arrays, n, D)?;
         self.insert(Body { id, material: material.clone(), particles, runs: Vec::new(), sizes })
     }
 
@@ -81,8 +88,11 @@ impl<const D: usize> State<D> {
         }
         let (points, size) =
             fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
-        let (n, volume) = (points.len(), size.iter().product::<f64>());
-        let density = if given.0 { how.density } else { how.mass / (volume * n as f64) };
+        let n = points.len();
+        let radius = |x: &[f64; D]| if self.options.axisymmetric { x[0] } else { 1.0 };
+        let area: f64 = size.iter().product();
+        let volumes: Vec<f64> = points.iter().map(|x| radius(x) * area).collect();
+        let density = if given.0 { how.density } else { how.mass / volumes.iter().sum::<f64>() };
         if !(density > 0.0 && density.is_finite()) {
             return Err(Error::invalid(format!(
                 "density [kg/m^3] or mass [kg] must be positive and finite, got {density} kg/m^3"
@@ -93,7 +103,7 @@ impl<const D: usize> State<D> {
             material,
             &ParticleArrays {
                 position: Strided::interleaved(points.as_flattened(), D)?,
-                volume: Strided::constant(&[volume], n),
+                volume: Strided::interleaved(&volumes, 1)?,
                 size: Some(Strided::constant(&size, n)),
                 mass: None,
                 density,
@@ -101,6 +111,20 @@ impl<const D: usize> State<D> {
                 stress: Some(Strided::constant(&how.stress, n)),
             },
         )
+    }
+
+    /// What bodies of this world and a material carry.
+    fn extras(&self, material: &Material) -> Extras {
+        let Options { shape, transfer, body_force, .. } = self.options;
+        let gradient = material.model().kinematics == Kinematics::DeformationGradient;
+        Extras {
+            size: shape.is_sized(),
+            body_force,
+            affine: transfer.is_affine(),
+            filtered: transfer.is_filtered(),
+            gradient: gradient || shape == ShapeKind::ContiguousGimp,
+            state: material.model().state_components(),
+        }
     }
 
     fn insert(&mut self, mut body: Body) -> Result<()> {
@@ -122,7 +146,9 @@ impl<const D: usize> State<D> {
             ..self.place()
         };
         for c in 0..layout.components() {
-            let positive = c == layout.mass || c == layout.volume;
+            let positive = c == layout.mass
+                || c == layout.volume
+                || (layout.size..layout.body_force).contains(&c);
             let good = |v: &f64| v.is_finite() && (!positive || *v > 0.0);
             if let Some(k) = particles.column(c).iter().position(|v| !good(v)) {
                 let name = field_of_column(&layout, D, c);
@@ -142,7 +168,26 @@ impl<const D: usize> State<D> {
                 let in_cells = (x[d] / space.spacing).abs().max(space.to_units(x)[d].abs());
                 in_cells < FARTHEST
             };
+            let behind = |d: usize| {
+                let xi = (x[d] - space.origin[d]) * space.inverse;
+                !(space.walls[d][0] - 1e-6 <= xi && xi <= space.walls[d][1] + 1e-6)
+            };
+            if (0..D).any(behind) {
+                let text = format!(
+                    "particle {} at {x:?} is behind a wall, where modified shape functions have no nodes: \
+                     move it in front, or use wall_treatment plain",
+                    particles.id[k]
+                );
+                return Err(Error::invalid(text).at(place(k)));
+            }
             let far = !(0..D).all(near);
+            if self.options.axisymmetric && x[0] <= 0.0 {
+                let text = format!(
+                    "particle {} at {x:?} must have a positive radius x: this world is axisymmetric about x = 0",
+                    particles.id[k]
+                );
+                return Err(Error::invalid(text).at(place(k)));
+            }
             if far || !self.inside_box(&x) {
                 let text = format!(
                     "particle {} at {x:?} is outside the grid (1e8 cells around its origin and that of space, or the box of a static grid)",

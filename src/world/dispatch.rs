@@ -1,15 +1,18 @@
 //! The one table that turns options into kernels.
 
 use crate::grid::Grid;
-use crate::shape::ShapeKind;
+use crate::shape::cubic_bspline::CubicBspline;
+use crate::shape::gimp::Gimp;
 use crate::shape::linear::Linear;
+use crate::shape::modified::Modified;
 use crate::shape::quadratic_bspline::QuadraticBspline;
-use crate::shape::stencil::ShapeFunction;
+use crate::shape::stencil::{At, ShapeFunction};
+use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_chunk};
 use crate::step::particles_to_grid::{Scatter, scatter_tiles};
 
-/// Calls the visitor with number and weight of every node of the stencil at ξ; false if a node's block is not active.
-pub type NodesAt<const D: usize> = fn(&Grid<D>, [f64; D], &mut dyn FnMut(usize, f64)) -> bool;
+/// Calls the visitor with number and weight of every node of the stencil of a place; false if a node's block is not active.
+pub type NodesAt<const D: usize> = fn(&Grid<D>, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;
 
 /// The kernels of a world, called once per run of particles.
 #[derive(Clone, Copy, Debug)]
@@ -20,16 +23,22 @@ pub struct Kernels<const D: usize> {
     pub gather: GatherKernel<D>,
     /// The nodes around a point.
     pub nodes_at: NodesAt<D>,
-    /// Σ w (x_i − x_p)² along one axis at ξ, in units of h².
-    pub moment: fn(f64) -> f64,
+    /// Σ w (x_i − x_p)² along one axis, in units of h².
+    pub moment: fn(At<f64>) -> f64,
 }
 
 impl<const D: usize> Kernels<D> {
-    /// The kernels of a shape function.
-    pub fn new(shape: ShapeKind) -> Self {
-        match shape {
-            ShapeKind::Linear => Self::of::<Linear, 2>(),
-            ShapeKind::QuadraticBspline => Self::of::<QuadraticBspline, 3>(),
+    /// The kernels of a shape function. Linear ones have nothing to modify next to a wall on a node plane.
+    pub fn new(shape: ShapeKind, walls: WallTreatment) -> Self {
+        use {ShapeKind as S, WallTreatment as W};
+        match (shape, walls) {
+            (S::Linear, _) => Self::of::<Linear, 2>(),
+            (S::QuadraticBspline, W::Plain) => Self::of::<QuadraticBspline, 3>(),
+            (S::QuadraticBspline, W::Modified) => Self::of::<Modified<QuadraticBspline>, 3>(),
+            (S::CubicBspline, W::Plain) => Self::of::<CubicBspline, 4>(),
+            (S::CubicBspline, W::Modified) => Self::of::<Modified<CubicBspline>, 4>(),
+            (S::UniformGimp | S::ContiguousGimp, W::Plain) => Self::of::<Gimp, 3>(),
+            (S::UniformGimp | S::ContiguousGimp, W::Modified) => Self::of::<Modified<Gimp>, 3>(),
         }
     }
 
@@ -38,8 +47,8 @@ impl<const D: usize> Kernels<D> {
             scatter: scatter_tiles::<S, N, D>,
             gather: gather_chunk::<S, N, D>,
             nodes_at: for_stencil_nodes::<S, N, D>,
-            moment: |xi| {
-                let axis = S::axis::<f64>(xi);
+            moment: |at| {
+                let axis = S::axis::<f64>(at);
                 (0..N).map(|n| axis.w[n] * (n as f64 - axis.fraction).powi(2)).sum()
             },
         }

@@ -98,9 +98,12 @@ impl World {
             return Err(Error::new(Status::ReadOnly, text));
         }
         self.host_wrote = true;
+        let moves = field != "body_force"; // which changes neither waves nor places
         on!(&mut self, s => {
-            s.limits = None;
-            s.rescan = true;
+            if moves {
+                s.limits = None;
+                s.rescan = true;
+            }
             let (info, first) = find(s, body, field)?;
             let at = s.body_position(body)?;
             let particles = &mut s.bodies[at].particles;

@@ -23,6 +23,7 @@ use crate::material::Material;
 use crate::particles::FieldInfo;
 use crate::particles::fields::NODE_FIELDS;
 use crate::particles::seeding::{Fill, Region};
+use crate::shape::WallTreatment;
 use crate::step;
 use crate::step::locate::locate;
 use crate::step::particles_to_grid::particles_to_grid;
@@ -162,9 +163,11 @@ impl World {
     pub fn add_wall(&mut self, wall: &Wall) -> Result<i64> {
         self.check_alive()?;
         wall.check(self.options().dimension)?;
+        on!(&self, s => s.check_wall(wall))?;
         let id = self.next_wall;
         self.next_wall += 1;
         on!(&mut self, s => s.walls.push(WallEntry { id, wall: *wall, reaction: [0.0; 3] }));
+        self.walls_changed();
         Ok(id)
     }
 
@@ -175,7 +178,16 @@ impl World {
             let at = s.wall_position(wall)?;
             s.walls.remove(at);
         });
+        self.walls_changed();
         Ok(())
+    }
+
+    /// Where walls modify shape functions, particles are sorted anew, and checked to stand between them.
+    fn walls_changed(&mut self) {
+        if self.options().wall_treatment == WallTreatment::Modified {
+            self.host_wrote = true;
+            on!(&mut self, s => s.particles_changed());
+        }
     }
 
     /// Force of a wall on the material in the last step [N]; the force on the wall is the opposite.
@@ -443,6 +455,36 @@ impl<const D: usize> State<D> {
     /// The body with this id.
     pub fn body(&self, id: i64) -> Result<&state::Body> {
         Ok(&self.bodies[self.body_position(id)?])
+    }
+
+    /// Refuses a wall that the shape functions can not be modified for.
+    fn check_wall(&self, wall: &Wall) -> Result<()> {
+        if self.options.wall_treatment != WallTreatment::Modified {
+            return Ok(());
+        }
+        let (h, origin) = (self.options.spacing, self.grid.origin[wall.axis]);
+        let node = ((wall.position - origin) / h).round();
+        if ((wall.position - origin) / h - node).abs() > 1e-6 {
+            return Err(Error::new(
+                Status::Unsupported,
+                format!(
+                    "with wall_treatment modified a wall stands on a node plane; {} is between two, the nearest is at {}",
+                    wall.position,
+                    origin + node * h
+                ),
+            ));
+        }
+        let same = |w: &&WallEntry| (w.wall.axis, w.wall.side) == (wall.axis, wall.side);
+        if let Some(other) = self.walls.iter().find(same) {
+            return Err(Error::new(
+                Status::Unsupported,
+                format!(
+                    "with wall_treatment modified an axis has one wall on each side; wall {} stands at {} already: remove it first",
+                    other.id, other.wall.position
+                ),
+            ));
+        }
+        Ok(())
     }
 
     fn wall_position(&self, id: i64) -> Result<usize> {

@@ -1,11 +1,11 @@
 //! Options of a world, their defaults and their rules.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Status};
 use crate::grid::GridPolicy;
-use crate::shape::ShapeKind;
+use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::StepOrder;
 use crate::step::locate::FARTHEST;
-use crate::transfer::TransferKind;
+use crate::transfer::{TransferKind, filter};
 
 /// Options of a world.
 #[derive(Clone, Debug)]
@@ -36,6 +36,14 @@ pub struct Options {
     pub box_min: [f64; 3],
     /// Upper corner of the box of a static grid [m].
     pub box_max: [f64; 3],
+    /// What shape functions do next to walls.
+    pub wall_treatment: WallTreatment,
+    /// Whether x is a radius and y the axis of rotational symmetry; volumes, masses and forces are then per radian.
+    pub axisymmetric: bool,
+    /// Terms of the filter of [`TransferKind::Xpic`] and [`TransferKind::Fmpm`].
+    pub filter_order: i32,
+    /// Whether particles carry a body force.
+    pub body_force: bool,
 }
 
 impl Default for Options {
@@ -54,6 +62,10 @@ impl Default for Options {
             grid_policy: GridPolicy::Dynamic,
             box_min: [0.0; 3],
             box_max: [0.0; 3],
+            wall_treatment: WallTreatment::Plain,
+            axisymmetric: false,
+            filter_order: 2,
+            body_force: false,
         }
     }
 }
@@ -91,9 +103,44 @@ impl Options {
         if !(self.cfl > 0.0 && self.cfl <= 1.0) {
             return Err(Error::invalid(format!("cfl must lie in (0, 1], got {}", self.cfl)));
         }
+        if !(1..=filter::MOST).contains(&self.filter_order) {
+            return Err(Error::invalid(format!(
+                "filter_order must be 1 (PIC) to {}, got {}",
+                filter::MOST,
+                self.filter_order
+            )));
+        }
         check_gravity(self.gravity)?;
         check_damping(self.damping)?;
+        self.check_combination()?;
         if self.grid_policy == GridPolicy::Static { self.check_box() } else { Ok(()) }
+    }
+
+    /// Refuses what does not go together, with the nearest combination that does.
+    fn check_combination(&self) -> Result<()> {
+        let unsupported = |text: String| Err(Error::new(Status::Unsupported, text));
+        let moment = matches!(self.shape, ShapeKind::QuadraticBspline | ShapeKind::CubicBspline);
+        if self.transfer == TransferKind::Mls && !moment {
+            return unsupported(format!(
+                "transfer MLS divides by Σ w r², which {:?} shape functions let vanish: use a quadratic or cubic B-spline, \
+                 or TPIC with {:?}",
+                self.shape, self.shape
+            ));
+        }
+        if self.transfer == TransferKind::Mls && self.wall_treatment == WallTreatment::Modified {
+            return unsupported(
+                "transfer MLS does not go with shape functions modified at walls, where Σ w r² vanishes: use APIC with \
+                 wall_treatment modified, or MLS with wall_treatment plain"
+                    .into(),
+            );
+        }
+        if self.axisymmetric && self.dimension != 2 {
+            return unsupported(format!(
+                "axial symmetry needs dimension 2 (x is the radius, y the axis), got dimension {}",
+                self.dimension
+            ));
+        }
+        Ok(())
     }
 
     fn check_box(&self) -> Result<()> {

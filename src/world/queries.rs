@@ -4,7 +4,6 @@ use crate::error::{Error, Result};
 use crate::grid::GridStats;
 use crate::particles::fields::NODE_FIELDS;
 use crate::step::locate::FARTHEST;
-use crate::transfer::TransferKind;
 
 use super::state::{Body, State};
 
@@ -17,7 +16,7 @@ pub struct Totals {
     pub mass: f64,
     /// Momentum [kg m/s].
     pub momentum: [f64; 3],
-    /// Angular momentum about the origin of space [kg m²/s], the affine part of APIC included.
+    /// Angular momentum about the origin of space [kg m²/s], the affine part included.
     pub angular_momentum: [f64; 3],
     /// Kinetic energy Σ ½ m v² [J].
     pub kinetic_energy: f64,
@@ -88,12 +87,14 @@ impl<const D: usize> State<D> {
     fn affine_spin(&self, body: &Body, k: usize) -> [f64; 3] {
         let (p, layout) = (&body.particles, body.particles.layout);
         let mut spin = [0.0; 3];
-        if self.options.transfer != TransferKind::Apic {
+        if !self.options.transfer.is_affine() {
             return spin;
         }
         let h2 = self.options.spacing.powi(2);
-        let xi = self.space().to_units(p.get::<D>(layout.position, k));
-        let moment = xi.map(|x| h2 * (self.kernels.moment)(x));
+        let sized = layout.body_force > layout.size;
+        let size = if sized { p.get::<D>(layout.size, k) } else { [0.0; D] };
+        let at = self.space().at(p.get::<D>(layout.position, k), size);
+        let moment = at.map(|at| h2 * (self.kernels.moment)(at));
         let c = |a: usize, b: usize| p.column(layout.affine + a * D + b)[k] * moment[b];
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if a < D && b < D {
@@ -147,8 +148,8 @@ impl<const D: usize> State<D> {
             return Err(Error::invalid(format!("points must be finite [m], got {point:?}")));
         }
         out.fill(0.0);
-        let xi = self.space().to_units(std::array::from_fn(|d| point[d]));
-        if xi.iter().any(|x| x.abs() >= FARTHEST) {
+        let at = self.space().at(std::array::from_fn(|d| point[d]), [0.0; D]);
+        if at.iter().any(|at| at.xi.abs() >= FARTHEST) {
             return Ok(false);
         }
         let mut mass = 0.0;
@@ -156,7 +157,7 @@ impl<const D: usize> State<D> {
         let value = &mut value[..components];
         let mut sum = [0.0; 3];
         let mut failed = None;
-        (self.kernels.nodes_at)(&self.grid, xi, &mut |node, w| {
+        (self.kernels.nodes_at)(&self.grid, at, &mut |node, w| {
             if let Err(error) = self.node_value(field, node as i64, value) {
                 failed = Some(error);
             }

@@ -6,9 +6,11 @@ use crate::boundary::Wall;
 use crate::context::Context;
 use crate::error::{Place, Result};
 use crate::grid::key::split_node;
-use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
+use crate::grid::{Grid, GridPolicy, Key, Lanes, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
+use crate::shape::WallTreatment;
+use crate::shape::stencil::At;
 use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
@@ -24,6 +26,13 @@ use super::scratch::{Scratch, with_buffers};
 /// Below this number of particles a step is serial: threads would cost more than they bring.
 const SERIAL_BELOW: usize = 4096;
 
+/// How far below an upper wall, in cells, a position on it counts to be: its stencil must not begin a cell further.
+const BELOW_WALL: f64 = 1e-9;
+
+fn below(wall: f64) -> f64 {
+    if wall.is_finite() { wall - BELOW_WALL * (1.0 + wall.abs()) } else { wall }
+}
+
 /// The place of the grid in space.
 #[derive(Clone, Copy, Debug)]
 pub struct Space<const D: usize> {
@@ -37,14 +46,34 @@ pub struct Space<const D: usize> {
     pub first_offset: f64,
     /// Distance, in cells, at which nodes feel a wall.
     pub wall_reach: f64,
+    /// Nodes of the walls below and above along each axis, next to which shape functions are modified; infinite if they are not.
+    pub walls: [[f64; 2]; D],
+    /// Positions between those walls.
+    inside: [[f64; 2]; D],
 }
 
 impl<const D: usize> Space<D> {
-    /// Position in units of the spacing, from node 0.
+    /// Position in units of the spacing, from node 0; what is behind a wall that modifies shape functions counts as on it.
     #[inline(always)]
     pub fn to_units<R: Real>(&self, x: [R; D]) -> [R; D] {
         let inverse = R::splat(self.inverse);
-        each!(d in D => (x[d] - R::splat(self.origin[d])) * inverse)
+        each!(d in D => {
+            let [low, high] = self.inside[d];
+            ((x[d] - R::splat(self.origin[d])) * inverse).max(R::splat(low)).min(R::splat(high))
+        })
+    }
+
+    /// Where shape functions are wanted for particles with edges `size` [m].
+    #[inline(always)]
+    pub fn at<R: Real>(&self, x: [R; D], size: [R; D]) -> [At<R>; D] {
+        let xi = self.to_units(x);
+        let half = R::splat(0.5 * self.inverse);
+        let mut at =
+            [At { xi: xi[0], half: size[0] * half, walls: self.walls[0].map(R::splat) }; D];
+        for d in 1..D {
+            at[d] = At { xi: xi[d], half: size[d] * half, walls: self.walls[d].map(R::splat) };
+        }
+        at
     }
 }
 
@@ -113,6 +142,8 @@ pub struct State<const D: usize> {
     pub walls: Vec<WallEntry>,
     /// Momentum that walls gave to the nodes of each block in a step.
     pub impulses: Vec<[f64; 3]>,
+    /// Velocities of nodes on their way through a filter; used by filtered transfers alone.
+    pub filtered: Vec<Lanes>,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
@@ -137,7 +168,7 @@ impl<const D: usize> State<D> {
     pub fn new(context: Arc<Context>, options: Options) -> Result<Self> {
         let origin = std::array::from_fn(|d| options.origin[d]);
         let mut world = Self {
-            kernels: Kernels::new(options.shape),
+            kernels: Kernels::new(options.shape, options.wall_treatment),
             grid: Grid::new(options.spacing, origin),
             tiles: Tiles::new(options.shape.nodes()),
             context,
@@ -145,6 +176,7 @@ impl<const D: usize> State<D> {
             bodies: Vec::new(),
             walls: Vec::new(),
             impulses: Vec::new(),
+            filtered: Vec::new(),
             sorting: Sorting::default(),
             regroup: true,
             rescan: true,
@@ -164,12 +196,22 @@ impl<const D: usize> State<D> {
 
     /// Origin, spacing and the two figures of the shape function.
     pub fn space(&self) -> Space<D> {
+        let modified = self.options.wall_treatment == WallTreatment::Modified;
+        let mut walls = [[f64::NEG_INFINITY, f64::INFINITY]; D];
+        for Wall { axis, side, position, .. } in self.walls.iter().map(|entry| entry.wall) {
+            if modified {
+                let node = ((position - self.grid.origin[axis]) / self.options.spacing).round();
+                walls[axis][usize::from(side < 0)] = node;
+            }
+        }
         Space {
             origin: self.grid.origin,
             spacing: self.options.spacing,
             inverse: 1.0 / self.options.spacing,
             first_offset: self.options.shape.first_offset(),
-            wall_reach: self.options.shape.wall_reach(),
+            wall_reach: if modified { 0.0 } else { self.options.shape.wall_reach() },
+            walls,
+            inside: walls.map(|[low, high]| [low, below(high)]),
         }
     }
 
@@ -272,6 +314,7 @@ impl<const D: usize> State<D> {
                             gather: kernels.gather,
                             transfer: options.transfer,
                             pic_rate: options.pic_rate,
+                            axisymmetric: options.axisymmetric,
                             time: *time,
                             stopwatch: stopwatch.as_deref(),
                         };
@@ -335,6 +378,8 @@ pub struct Piece<'c, 's, const D: usize> {
     pub transfer: TransferKind,
     /// Rate of PIC [1/s].
     pub pic_rate: f64,
+    /// Whether x is a radius.
+    pub axisymmetric: bool,
     /// Time at the start of the step [s].
     pub time: f64,
     stopwatch: Option<&'s Stopwatch>,

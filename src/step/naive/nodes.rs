@@ -1,0 +1,156 @@
+//! What the textbook's step does with nodes: weights, walls, sums to the grid and back, strain.
+
+use crate::boundary::Wall;
+use crate::shape::{ShapeKind, WallTreatment, textbook::weight_between};
+use crate::transfer::TransferKind;
+use crate::world::options::Options;
+use nalgebra::{SMatrix, SVector};
+use std::{array::from_fn, collections::BTreeMap};
+
+/// A vector in D dimensions.
+pub type Vector<const D: usize> = SVector<f64, D>;
+/// A matrix in D dimensions.
+pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
+/// A particle: position, velocity, affine matrix, mass, volume, stress in the axes of the world and of the hoop, edges, body force.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Particle<const D: usize> {
+    pub x: Vector<D>,
+    pub v: Vector<D>,
+    pub c: Matrix<D>,
+    pub mass: f64,
+    pub volume: f64,
+    pub stress: Matrix<D>,
+    pub hoop_stress: f64,
+    pub size: Vector<D>,
+    pub body_force: Vector<D>,
+}
+
+/// A node: mass, momentum, force, velocity, its increment, the velocity that particles take, and that gradients are taken of.
+#[derive(Clone, Copy)]
+pub struct Node<const D: usize>(pub f64, pub [Vector<D>; 6]);
+/// The fields of a node.
+pub const MV: usize = 0;
+#[allow(missing_docs)]
+pub const F: usize = 1;
+#[allow(missing_docs)]
+pub const V: usize = 2;
+#[allow(missing_docs)]
+pub const DV: usize = 3;
+#[allow(missing_docs)]
+pub const U: usize = 4;
+#[allow(missing_docs)]
+pub const LAST: usize = 5;
+/// The grid.
+pub type Grid<const D: usize> = BTreeMap<[i64; D], Node<D>>;
+/// What the step needs beside the particles.
+pub type Setup<'a> = (&'a Options, &'a [Wall]);
+/// Updates a particle of which velocity gradient, hoop rate and time step are given.
+pub type Update<'a, const D: usize> = dyn FnMut(&mut Particle<D>, &Matrix<D>, f64, f64) + 'a;
+
+/// A node near a particle: index, w, ∇w, r = x_i − x_p.
+pub type Near<const D: usize> = ([i64; D], f64, Vector<D>, Vector<D>);
+/// The nodes near a particle.
+pub fn near<const D: usize>((o, walls): Setup<'_>, p: &Particle<D>) -> Vec<Near<D>> {
+    let (h, between) = (o.spacing, walls_around::<D>((o, walls)));
+    let xi: [f64; D] = from_fn(|d| (p.x[d] - o.origin[d]) / h);
+    let node = |n: usize| {
+        let i: [i64; D] =
+            from_fn(|d| xi[d].floor() as i64 - 1 + (n / 4usize.pow(d as u32) % 4) as i64);
+        let axis: [(f64, f64); D] = from_fn(|d| {
+            weight_between(o.shape, i[d], |i| xi[d] - i as f64, 0.5 * p.size[d] / h, between[d])
+        });
+        let slope = |d: usize, e: usize| if d == e { axis[e].1 / h } else { axis[e].0 };
+        let (w, r) = (
+            (0..D).map(|d| axis[d].0).product::<f64>(),
+            Vector::from_fn(|d, _| (i[d] as f64 - xi[d]) * h),
+        );
+        let mls = r * w * moment(o.shape) / (h * h);
+        let dw = Vector::from_fn(|d, _| (0..D).map(|e| slope(d, e)).product());
+        (w > 0.0).then_some((i, w, if o.transfer == TransferKind::Mls { mls } else { dw }, r))
+    };
+    (0..4usize.pow(D as u32)).filter_map(node).collect()
+}
+
+/// The nodes of the walls that modify the shape functions along each axis.
+fn walls_around<const D: usize>((o, walls): Setup<'_>) -> [[i64; 2]; D] {
+    let mut between = [[i64::MIN, i64::MAX]; D];
+    let modified = o.wall_treatment == WallTreatment::Modified && o.shape != ShapeKind::Linear;
+    for wall in walls.iter().filter(|_| modified) {
+        let node = ((wall.position - o.origin[wall.axis]) / o.spacing).round();
+        between[wall.axis][usize::from(wall.side < 0)] = node as i64;
+    }
+    between
+}
+
+/// Whether the function of a node behind a wall reaches a particle along axis d.
+pub fn reaches_behind_wall<const D: usize>(s: Setup<'_>, p: &Particle<D>, d: usize) -> bool {
+    let xi = (p.x[d] - s.0.origin[d]) / s.0.spacing;
+    let [low, high] = walls_around::<D>(s)[d].map(|node| node as f64);
+    (xi - low).min(high - xi) < 0.5 * s.0.shape.nodes() as f64 - 1.0
+}
+
+/// 1 / Σ w r², in units of 1 / h².
+pub fn moment(shape: ShapeKind) -> f64 {
+    if shape == ShapeKind::CubicBspline { 3.0 } else { 4.0 }
+}
+
+/// A velocity of a node as the walls leave it.
+pub fn walled<const D: usize>((o, walls): Setup<'_>, i: &[i64; D], v: Vector<D>) -> Vector<D> {
+    let reach =
+        if o.wall_treatment == WallTreatment::Modified { 0.0 } else { o.shape.wall_reach() };
+    let acts = |w: &&Wall| {
+        let x = o.origin[w.axis] + i[w.axis] as f64 * o.spacing;
+        (x - w.position) * f64::from(w.side) <= (reach + 1e-9) * o.spacing
+    };
+    walls.iter().filter(acts).fold(v, |v, wall| wall.constrain(v.into()).into())
+}
+
+/// Masses, and what `give` gives to a node at the distance r, summed over the particles into momenta and forces.
+pub fn scatter<const D: usize>(
+    s: Setup<'_>,
+    particles: &[Particle<D>],
+    v: impl Fn(usize, Vector<D>) -> Vector<D>,
+) -> Grid<D> {
+    let mut grid = Grid::new();
+    for (k, p) in particles.iter().enumerate() {
+        for (i, w, dw, r) in near(s, p) {
+            let n = grid.entry(i).or_insert(Node(0.0, [Vector::zeros(); 6]));
+            n.0 += w * p.mass;
+            n.1[MV] += w * p.mass * v(k, r);
+            n.1[F] += w * p.mass * p.body_force - p.volume * p.stress * dw;
+            n.1[F][0] -= if s.0.axisymmetric { p.volume * p.hoop_stress * w / p.x[0] } else { 0.0 };
+        }
+    }
+    grid
+}
+
+/// Σ w v of the particles.
+pub fn gather<const D: usize>(
+    s: Setup<'_>,
+    particles: &[Particle<D>],
+    grid: &Grid<D>,
+    field: usize,
+) -> Vec<Vector<D>> {
+    let sum = |p| near(s, p).iter().map(|(i, w, ..)| *w * grid[i].1[field]).sum();
+    particles.iter().map(sum).collect()
+}
+
+/// Volumes and stresses over `dt` with the gradients of a field of the grid.
+pub fn strain<const D: usize>(
+    s: Setup<'_>,
+    particles: &mut [Particle<D>],
+    x: &[Vector<D>],
+    (grid, field): (&Grid<D>, usize),
+    dt: f64,
+    update: &mut Update<'_, D>,
+) {
+    for (p, moved) in particles.iter_mut().zip(x) {
+        let all = near(s, p);
+        let l: Matrix<D> = all.iter().map(|(i, _, dw, _)| grid[i].1[field] * dw.transpose()).sum();
+        let radial: f64 = all.iter().map(|(i, w, ..)| w * grid[i].1[field][0]).sum();
+        let hoop = if s.0.axisymmetric { radial / p.x[0] } else { 0.0 };
+        (p.x, p.volume) = (*moved, p.volume * ((l.trace() + hoop) * dt).exp());
+        update(p, &l, hoop, dt);
+    }
+}
