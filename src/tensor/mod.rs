@@ -3,6 +3,10 @@
 //! Symmetric tensors are stored as xx, yy, zz, xy, yz, zx (tensor components, not engineering shears), gradients row-major.
 //! Two-dimensional worlds use the same shapes with zeros out of the plane. The formulas are written for one tensor or for eight.
 
+mod polar;
+
+pub use polar::{determinant, polar_angle, polar_rotation, stretch_diagonal};
+
 use nalgebra::Matrix3;
 
 use crate::simd::{LANES, Real, Vector, each};
