@@ -3,8 +3,8 @@
 use super::Rows;
 use crate::simd::{Real, each};
 
-/// Steps of the iteration; the first ones are scaled. Enough for ratios of stretches up to 10⁴, with one to spare at 25.
-const STEPS: usize = 9;
+/// Steps of the iteration, of which the first are scaled: for ratios of stretches up to 25, seven reach round-off; one to spare.
+const STEPS: usize = 8;
 const SCALED: usize = 5;
 
 /// R of F = R U, for one deformation gradient or eight; det F must be positive.
