@@ -1,7 +1,7 @@
 //! The polar decomposition F = R U of deformation gradients: the rotation R and the diagonal of the stretch U.
 
-use super::Rows;
-use crate::simd::{Real, each};
+use super::{Rows, product, rotated, turned_in_plane};
+use crate::simd::{Real, Vector, each};
 
 /// Steps of the iteration, of which the first are scaled: for ratios of stretches up to 25, seven reach round-off; one to spare.
 const STEPS: usize = 8;
@@ -34,7 +34,7 @@ pub fn polar_rotation<R: Real>(f: &Rows<R>) -> Rows<R> {
 /// Cosine and sine of the R of F = R U where F leaves the z axis alone:
 /// tan θ = (F_yx − F_xy) / (F_xx + F_yy), for one deformation gradient or eight.
 #[inline(always)]
-pub fn polar_angle<R: Real>(f: &Rows<R>) -> (R, R) {
+fn polar_angle<R: Real>(f: &Rows<R>) -> (R, R) {
     let (c, s) = (f[0][0] + f[1][1], f[1][0] - f[0][1]);
     let inverse = R::splat(1.0) / (c * c + s * s).sqrt();
     (c * inverse, s * inverse)
@@ -45,6 +45,27 @@ pub fn polar_angle<R: Real>(f: &Rows<R>) -> (R, R) {
 pub fn stretch_diagonal<R: Real>(f: &Rows<R>) -> [R; 3] {
     let r = polar_rotation(f);
     each!(a in 3 => r[0][a] * f[0][a] + r[1][a] * f[1][a] + r[2][a] * f[2][a]) // [STR-7]
+}
+
+/// R(F₁) R(F₀)ᵀ, the increment of the rotation between two deformation gradients, or eight pairs.
+#[inline(always)]
+pub fn rotation_between<R: Real>(old: &Rows<R>, new: &Rows<R>) -> Rows<R> {
+    let (old, new) = (polar_rotation(old), polar_rotation(new));
+    each!(a in 3, b in 3 => product(new[a], old[b])) // [STR-8]
+}
+
+/// Q s Qᵀ of eight symmetric tensors with Q = R(F₁) R(F₀)ᵀ; in two dimensions in closed form.
+#[inline(always)]
+pub fn turned_between<V: Vector, const D: usize>(
+    old: &Rows<V>,
+    new: &Rows<V>,
+    s: [V; 6],
+) -> [V; 6] {
+    if D == 3 {
+        return rotated(&rotation_between(old, new), s);
+    }
+    let ((c0, s0), (c1, s1)) = (polar_angle(old), polar_angle(new));
+    turned_in_plane((c1 * c0 + s1 * s0, c1 * s0 - s1 * c0), s)
 }
 
 /// det A.
@@ -77,7 +98,7 @@ fn squares<R: Real>(a: &Rows<R>) -> R {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::{Isa, Kernel, LANES, Vector};
+    use crate::simd::{Isa, Kernel, LANES};
     use nalgebra::{Matrix3, Rotation3, Vector3};
 
     /// Eight deformation gradients R U with known R, whose principal stretches reach from 0.2 to 5 along turned axes.
@@ -121,6 +142,10 @@ mod tests {
                 let r = polar_rotation(&f);
                 let u = stretch_diagonal(&f);
                 let (c, s) = polar_angle(&f);
+                let one = each!(a in 3, b in 3 => V::splat(if a == b { 1.0 } else { 0.0 }));
+                let stress = [3.0, -1.0, 0.5, 2.0, -0.7, 1.1];
+                let space = turned_between::<V, 3>(&one, &f, stress.map(V::splat));
+                let in_plane = turned_between::<V, 2>(&one, &f, stress.map(V::splat));
                 for l in 0..LANES {
                     let (known, f) = samples[l];
                     let r = Matrix3::from_fn(|a, b| r[a][b].to_array()[l]);
@@ -132,6 +157,14 @@ mod tests {
                     for a in 0..3 {
                         let expected = (known.transpose() * f)[(a, a)];
                         worst = worst.max((u[a].to_array()[l] - expected).abs() / 5.0);
+                    }
+                    let turned = known * crate::tensor::symmetric(stress) * known.transpose();
+                    let turned = crate::tensor::symmetric_part(&turned);
+                    for i in 0..6 {
+                        worst = worst.max((space[i].to_array()[l] - turned[i]).abs() / 5.0);
+                        if plane {
+                            worst = worst.max((in_plane[i].to_array()[l] - turned[i]).abs() / 5.0);
+                        }
                     }
                     if plane {
                         let zeros = [r[(0, 2)], r[(1, 2)], r[(2, 0)], r[(2, 1)]];

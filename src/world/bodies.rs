@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Place, Result};
-use crate::material::{Kinematics, Material};
+use crate::material::Material;
 use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{CHUNK, Layout, Particles};
 use crate::step::locate::FARTHEST;
@@ -34,7 +34,7 @@ impl<const D: usize> State<D> {
                 arrays.density
             )));
         }
-        let gradient = material.model().kinematics == Kinematics::DeformationGradient;
+        let gradient = material.model().kinematics.carries_deformation_gradient();
         let affine = self.options.transfer == TransferKind::Apic;
         let state = material.model().state_components();
         let mut particles = Particles::new(Layout::new(D, affine, gradient, state), n)?;

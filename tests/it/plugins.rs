@@ -161,7 +161,7 @@ fn every_bad_plugin_is_refused_with_its_reason() {
         ("no_wave_speed_output", invalid, &["LAHAR_OUTPUT_WAVE_SPEED"]),
         ("unknown_output", invalid, &["expected outputs among", "0x10000000001"]),
         ("unknown_input", invalid, &["wants input 3", "density"]),
-        ("unknown_kinematics", invalid, &["expected kinematics 0, 1 or 2, got 7"]),
+        ("unknown_kinematics", invalid, &["expected kinematics 0, 1, 2 or 3, got 7"]),
         ("small_table", invalid, &["plugin table", "struct_size", "got 16"]),
         ("small_parameters", invalid, &["expected parameters of at least", "got 8"]),
         ("no_models", invalid, &["at least one model"]),

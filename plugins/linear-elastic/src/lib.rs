@@ -111,6 +111,7 @@ impl PointLaw<0> for LinearElastic {
             state1: [],
             wave_speed,
             diffusivity: 0.0,
+            energy: 0.0,
             status: if sane { PointStatus::Ok } else { PointStatus::Failed },
         }
     }
