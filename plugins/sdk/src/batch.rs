@@ -122,6 +122,12 @@ impl<'a> Batch<'a> {
         Matrix3::from_row_slice(&self.gather::<9>(self.deformation_gradient, k))
     }
 
+    /// The same row by row.
+    #[inline]
+    pub fn deformation_gradient_rows(&self, k: usize) -> [f64; 9] {
+        self.gather(self.deformation_gradient, k)
+    }
+
     /// Cauchy stress of point `k` at the start [Pa].
     #[inline]
     pub fn stress0(&self, k: usize) -> [f64; 6] {
