@@ -10,7 +10,7 @@ const SCALED: usize = 5;
 /// R of F = R U, for one deformation gradient or eight; det F must be positive.
 ///
 /// Newton's iteration X ← (g X + X⁻ᵀ / g) / 2 from X = F, with g = √(|X⁻¹| / |X|) in the Frobenius norm while X is far from R:
-/// N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174, doi:10.1137/0907079, equations 3.1 and 3.5. The number of steps
+/// N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174, doi:10.1137/0907079. The number of steps
 /// is fixed, so that lanes do not depend on each other. Components that are zero, as those out of the plane, stay zero.
 #[inline(always)]
 pub fn polar_rotation<R: Real>(f: &Rows<R>) -> Rows<R> {

@@ -82,6 +82,12 @@ impl Hencky {
         }
         self.shear_modulus * shear + axial // [STR-15]
     }
+
+    /// Speed of the fastest wave [m/s] at the current density [kg/m^3], or a little more.
+    #[inline(always)]
+    fn wave_speed_of(&self, p: &Principal, j: f64, density: f64) -> f64 {
+        (self.stiffness(p) / (j * density)).sqrt()
+    }
 }
 
 #[inline(always)]
@@ -127,7 +133,7 @@ impl Model for Hencky {
         for k in 0..batch.n() {
             let f = batch.deformation_gradient_rows(k);
             let p = self.principal(principal(left_cauchy_green(f)).0);
-            let speed = (self.stiffness(&p) / (determinant(f) * density[k])).sqrt();
+            let speed = self.wave_speed_of(&p, determinant(f), density[k]);
             batch.set_wave_speed(k, speed);
         }
     }
@@ -152,7 +158,7 @@ impl PointLaw<0> for Hencky {
         }
         let work = t[0] * p.log[0] + t[1] * p.log[1] + t[2] * p.log[2]; // 2 τ : ε
         let energy = 0.25 * work * inverse; // [STR-14]
-        let wave_speed = (self.stiffness(&p) * inverse / point.inputs[0]).sqrt();
+        let wave_speed = self.wave_speed_of(&p, j, point.inputs[0]);
         let sane = is_finite(stress1) & is_finite([wave_speed, energy]) & (j > 0.0);
         Updated {
             stress1,
