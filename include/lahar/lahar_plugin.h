@@ -36,7 +36,8 @@ extern "C" {
 // Minor version: tables may have grown at their ends since lower minors.
 #define LAHAR_PLUGIN_ABI_MINOR 0
 
-// The model takes the strain increment; the engine has rotated the start stress (and symmetric state) objectively.
+// The model takes the strain increment; the engine has turned the start stress (and objective state) by exp(W dt), W = skw L:
+// the Jaumann rate.
 #define LAHAR_KINEMATICS_STRAIN_INCREMENT 0
 
 // The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
@@ -44,6 +45,10 @@ extern "C" {
 
 // The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
 #define LAHAR_KINEMATICS_DEFORMATION_GRADIENT 2
+
+// The model takes the strain increment; the engine has turned the start stress (and objective state) by the increment of the
+// rotation R of F = R U instead of by exp(W dt): the Green-Naghdi rate.
+#define LAHAR_KINEMATICS_GREEN_NAGHDI 3
 
 // A real number.
 #define LAHAR_PARAMETER_REAL 0
@@ -279,7 +284,8 @@ typedef struct lahar_model_desc {
     int32_t (*init_state)(const void *instance, const lahar_stress_batch *batch);
     // One step of all points of the batch. Mandatory. [several threads]
     int32_t (*update)(const void *instance, const lahar_stress_batch *batch);
-    // Wave speed (and diffusivity, if declared) from `stress0`, `state0` and `inputs`. Mandatory. [several threads]
+    // Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
+    // deformation gradient. Mandatory. [several threads]
     int32_t (*wave_speed)(const void *instance, const lahar_stress_batch *batch);
     // A table for the extension `id`, or NULL. May be NULL. [any thread]
     const void *(*get_extension)(const char *id);

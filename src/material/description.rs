@@ -92,12 +92,26 @@ impl Model {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Kinematics {
-    /// The strain increment dt sym L; the engine rotates the start stress objectively.
+    /// The strain increment dt sym L; the engine turns the start stress by exp(W dt), W = skw L (Jaumann).
     StrainIncrement = abi::LAHAR_KINEMATICS_STRAIN_INCREMENT,
     /// The velocity gradient; the start stress arrives unrotated.
     VelocityGradient = abi::LAHAR_KINEMATICS_VELOCITY_GRADIENT,
     /// The deformation gradient at the end of the step; the start stress arrives unrotated.
     DeformationGradient = abi::LAHAR_KINEMATICS_DEFORMATION_GRADIENT,
+    /// The strain increment dt sym L; the engine turns the start stress by the increment of the rotation R of F = R U.
+    GreenNaghdi = abi::LAHAR_KINEMATICS_GREEN_NAGHDI,
+}
+
+impl Kinematics {
+    /// Whether the model is given the strain increment.
+    pub fn takes_strain_increment(self) -> bool {
+        matches!(self, Self::StrainIncrement | Self::GreenNaghdi)
+    }
+
+    /// Whether the particles of such a model carry the deformation gradient.
+    pub fn carries_deformation_gradient(self) -> bool {
+        matches!(self, Self::DeformationGradient | Self::GreenNaghdi)
+    }
 }
 
 /// A value per point that the engine gives beside the deformation.

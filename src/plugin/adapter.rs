@@ -81,7 +81,9 @@ impl Instance {
             return Ok(());
         }
         let kinematics = match self.model.kinematics {
-            Kinematics::StrainIncrement => need("strain_increment", batch.strain_increment.len()),
+            Kinematics::StrainIncrement | Kinematics::GreenNaghdi => {
+                need("strain_increment", batch.strain_increment.len())
+            }
             Kinematics::VelocityGradient => {
                 need("velocity_gradient", batch.velocity_gradient.len())
             }
@@ -195,7 +197,7 @@ impl Instance {
             dt: batch.dt,
             time: batch.time,
             strain_increment: asked(
-                kinematics(Kinematics::StrainIncrement),
+                model.kinematics.takes_strain_increment(),
                 "strain_increment",
                 batch.strain_increment,
                 6,

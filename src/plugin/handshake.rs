@@ -225,7 +225,8 @@ unsafe fn read_model(
         LAHAR_KINEMATICS_STRAIN_INCREMENT => Kinematics::StrainIncrement,
         LAHAR_KINEMATICS_VELOCITY_GRADIENT => Kinematics::VelocityGradient,
         LAHAR_KINEMATICS_DEFORMATION_GRADIENT => Kinematics::DeformationGradient,
-        other => return Err(place.error(format!("expected kinematics 0, 1 or 2, got {other}"))),
+        LAHAR_KINEMATICS_GREEN_NAGHDI => Kinematics::GreenNaghdi,
+        other => return Err(place.error(format!("expected kinematics 0, 1, 2 or 3, got {other}"))),
     };
     place.ensure(desc.outputs & LAHAR_OUTPUT_WAVE_SPEED != 0, || {
         format!(

@@ -43,9 +43,9 @@ impl ShapeFunction<3> for Gimp {
 #[inline(always)]
 fn weight<R: Real>(r: R, l: R, inverse: R) -> (R, R) {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let r = r.min(one + l);
-    let outer = (r - one + l).max(zero); // how far the domain reaches over the foot of the hat
-    let inner = (l - r).max(zero); // and over its top
-    let w = one - r + inverse * (R::splat(0.5) * outer * outer - inner * inner); // [SHP-2]
-    (w, inverse * (outer + inner + inner) - one)
+    let outer = (one + l - r).max(zero).min(l + l); // how much of the domain's far edge is under the hat
+    let inner = (l - r).max(zero); // how far the domain reaches over its top
+    let slant = (one - l - r).max(zero);
+    let w = inverse * (R::splat(0.5) * outer * outer - inner * inner) + slant; // [SHP-2]
+    (w, inverse * (inner + inner - outer))
 }

@@ -21,6 +21,7 @@ pub mod locate;
 pub mod naive;
 pub mod particles_to_grid;
 pub mod time_step;
+pub mod update_domain;
 pub mod update_grid;
 pub mod update_strain;
 pub mod update_stress;

@@ -78,6 +78,11 @@ fn limits_of_chunk<const D: usize>(
             s.state0[c * s.stride..][..n]
                 .copy_from_slice(&particles.column(layout.state + c)[first..first + n]);
         }
+        for c in 0..s.deformation_gradient.len() / s.stride {
+            s.deformation_gradient[c * s.stride..][..n].copy_from_slice(
+                &particles.column(layout.deformation_gradient + c)[first..first + n],
+            );
+        }
         for k in 0..n {
             s.set_inputs(
                 k,

@@ -1,24 +1,35 @@
-//! Stage 6, strain: Δε = dt sym L, V ← V exp(dt tr L), F ← (I + dt L) F, and the objective rotation of the start stress.
+//! Stage 6, strain: Δε = dt sym L, the volume, F ← (I + dt L) F, and the objective rotation of the start stress.
 //!
-//! The stress is rotated by R = exp(W dt), W = skw L, before the material adds its increment (incrementally objective update,
-//! T. J. R. Hughes, J. Winget, Int. J. Numer. Meth. Engng 15 (1980) 1862–1867, doi:10.1002/nme.1620151210, with the exact
-//! exponential instead of the midpoint rule).
+//! The stress is turned before the material adds its increment (incrementally objective update, T. J. R. Hughes, J. Winget,
+//! Int. J. Numer. Meth. Engng 15 (1980) 1862–1867, doi:10.1002/nme.1620151210), as the model asks: by exp(W dt), W = skw L, instead
+//! of the midpoint rule there, which makes the Jaumann rate, or by the increment of the rotation R in F = R U, which makes that of
+//! A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965) 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
 
 use crate::material::{Kinematics, Rotation};
+use crate::particles::ChunkMut;
 use crate::simd::{Kernel, LANES, Vector, each};
-use crate::tensor::{Rows, SYMMETRIC, exp, rotated, step_rotations, turned};
+use crate::tensor::{
+    Rows, SYMMETRIC, determinant, exp, rotated, rotation_between, step_rotations, turned,
+    turned_between,
+};
 use crate::world::state::{ChunkStage, Piece};
+
+use super::update_domain::update_domain;
 
 /// Fills the chunk's scratch with what the material takes, and updates volume and deformation gradient.
 pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
-    piece.isa.dispatch(Strain(piece, dt));
-    if piece.chunk.layout.state > piece.chunk.layout.deformation_gradient {
-        piece.isa.dispatch(DeformationGradient(piece, dt));
-    }
     copy_state(piece);
     let objective = |rotation| rotation == Rotation::Objective;
-    if piece.material.model().states.iter().any(|state| objective(state.rotation)) {
+    let model = piece.material.model();
+    if model.states.iter().any(|state| objective(state.rotation)) {
         piece.isa.dispatch(RotatedState(piece, dt));
+    }
+    if piece.resize {
+        update_domain(piece, dt);
+    }
+    match piece.chunk.layout.state > piece.chunk.layout.deformation_gradient {
+        false => piece.isa.dispatch(Strain::<D, false>(piece, dt)),
+        true => piece.isa.dispatch(Strain::<D, true>(piece, dt)),
     }
     piece.lap(ChunkStage::Strained);
 }
@@ -26,7 +37,7 @@ pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
 /// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the plane. Lanes without a point are zero: what
 /// the scratch held there before must not matter.
 #[inline(always)]
-fn gradient<V: Vector, const D: usize>(
+pub(super) fn gradient<V: Vector, const D: usize>(
     l: &[f64],
     stride: usize,
     (k, end): (usize, usize),
@@ -44,26 +55,71 @@ fn gradient<V: Vector, const D: usize>(
     rows
 }
 
-struct Strain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+/// The deformation gradients of the points k to `end` at the start of the step.
+#[inline(always)]
+pub(super) fn deformation_gradient<V: Vector>(
+    chunk: &ChunkMut<'_>,
+    (k, end): (usize, usize),
+) -> Rows<V> {
+    let first = chunk.layout.deformation_gradient;
+    each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]))
+}
 
-impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
+/// (I + dt L) F.
+#[inline(always)]
+pub(super) fn deformed<V: Vector>(f: &Rows<V>, l: &Rows<V>, dt: f64) -> Rows<V> {
+    each!(a in 3, b in 3 => {
+        let lf = l[a][0] * f[0][b] + l[a][1] * f[1][b] + l[a][2] * f[2][b];
+        lf.mul_add(V::splat(dt), f[a][b]) // [STR-2]
+    })
+}
+
+/// det(I + dt L), by which the volume of what carries F grows.
+#[inline(always)]
+fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
+    let step = each!(a in 3, b in 3 => {
+        l[a][b].mul_add(V::splat(dt), V::splat(if a == b { 1.0 } else { 0.0 }))
+    });
+    determinant(&step) // [STR-4]
+}
+
+/// Strain increment, start stress and volume; `F`: for particles that carry the deformation gradient.
+struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut Piece<'c, 's, D>, f64);
+
+impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
         let Self(piece, dt) = self;
         let Piece { chunk, scratch, material, .. } = piece;
         let (layout, stride) = (chunk.layout, scratch.stride);
-        let rotates = material.model().kinematics == Kinematics::StrainIncrement;
+        let kinematics = material.model().kinematics;
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
             let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
             let half = V::splat(0.5 * dt);
             let increment = each!(c in 6 => {
                 let (a, b) = SYMMETRIC[c];
-                half * (l[a][b] + l[b][a])
+                half * (l[a][b] + l[b][a]) // [STR-1]
             });
             let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
-            if rotates {
+            if F {
+                let old = deformation_gradient::<V>(chunk, (k, end));
+                let new = deformed(&old, &l, dt);
+                for c in 0..9 {
+                    let column = &mut chunk.column_mut(layout.deformation_gradient + c)[k..end];
+                    new[c / 3][c % 3].store(column);
+                }
+                if kinematics == Kinematics::GreenNaghdi {
+                    stress = turned_between::<V, D>(&old, &new, stress);
+                } else if kinematics == Kinematics::DeformationGradient {
+                    for c in 0..9 {
+                        let to = &mut scratch.deformation_gradient[c * stride + k..][..LANES];
+                        new[c / 3][c % 3].store(to);
+                    }
+                }
+            }
+            if kinematics == Kinematics::StrainIncrement {
                 stress = turned::<V, D>(&l, dt, stress);
             }
             for c in 0..6 {
@@ -72,39 +128,15 @@ impl<const D: usize> Kernel for Strain<'_, '_, '_, D> {
             }
             let mass = V::load(&chunk.column(layout.mass)[k..end]);
             let volume = &mut chunk.column_mut(layout.volume)[k..end];
-            let new = V::load(volume) * exp(increment[0] + increment[1] + increment[2]);
+            let trace = increment[0] + increment[1] + increment[2];
+            let ratio = if F { growth(&l, dt) } else { exp(trace) }; // [STR-3]
+            let new = V::load(volume) * ratio;
             new.store(volume);
             if !scratch.density.is_empty() {
                 (mass / new).store(&mut scratch.density[k..][..LANES]);
             }
         }
         scratch.element_length.fill(piece.space.spacing);
-    }
-}
-
-struct DeformationGradient<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
-
-impl<const D: usize> Kernel for DeformationGradient<'_, '_, '_, D> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: Vector>(self) {
-        let Self(Piece { chunk, scratch, .. }, dt) = self;
-        let (first, stride) = (chunk.layout.deformation_gradient, scratch.stride);
-        for k in (0..chunk.len).step_by(LANES) {
-            let end = chunk.len.min(k + LANES);
-            let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
-            let f: Rows<V> =
-                each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]));
-            for a in 0..3 {
-                for b in 0..3 {
-                    let lf = l[a][0] * f[0][b] + l[a][1] * f[1][b] + l[a][2] * f[2][b];
-                    let new = lf.mul_add(V::splat(dt), f[a][b]);
-                    let c = 3 * a + b;
-                    new.store(&mut scratch.deformation_gradient[c * stride + k..][..LANES]);
-                    new.store(&mut chunk.column_mut(first + c)[k..end]);
-                }
-            }
-        }
     }
 }
 
@@ -133,7 +165,13 @@ impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
                 for k in (0..chunk.len).step_by(LANES) {
                     let end = chunk.len.min(k + LANES);
                     let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
-                    let r = step_rotations(&l, dt);
+                    let r = match material.model().kinematics {
+                        Kinematics::GreenNaghdi => {
+                            let old = deformation_gradient(chunk, (k, end));
+                            rotation_between(&old, &deformed(&old, &l, dt))
+                        }
+                        _ => step_rotations(&l, dt),
+                    };
                     let at = |c: usize| (first + c) * stride + k;
                     let mut value = [V::splat(0.0); 9];
                     for c in 0..components {

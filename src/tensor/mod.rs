@@ -3,6 +3,10 @@
 //! Symmetric tensors are stored as xx, yy, zz, xy, yz, zx (tensor components, not engineering shears), gradients row-major.
 //! Two-dimensional worlds use the same shapes with zeros out of the plane. The formulas are written for one tensor or for eight.
 
+mod polar;
+
+pub use polar::{determinant, polar_rotation, rotation_between, stretch_diagonal, turned_between};
+
 use nalgebra::Matrix3;
 
 use crate::simd::{LANES, Real, Vector, each};
@@ -49,7 +53,7 @@ pub fn step_rotation(l: &Mat3, dt: f64) -> Mat3 {
 #[inline(always)]
 pub fn step_rotations<V: Vector>(l: &Rows<V>, dt: f64) -> Rows<V> {
     let w = spin(l, V::splat(dt));
-    rodrigues(&w, factors(square(&w)))
+    rodrigues(&w, factors(square(&w))) // [STR-5]
 }
 
 /// R s Rᵀ of eight symmetric tensors with the rotations of a step; in two dimensions those about z, for a third of the cost.
@@ -60,7 +64,12 @@ pub fn turned<V: Vector, const D: usize>(l: &Rows<V>, dt: f64, s: [V; 6]) -> [V;
     }
     let [w, ..] = spin(l, V::splat(dt));
     let (a, b) = factors(w * w);
-    let (cos, sin) = (V::splat(1.0) - b * w * w, a * w);
+    turned_in_plane((V::splat(1.0) - b * w * w, a * w), s)
+}
+
+/// R s Rᵀ with R = [cos, sin; −sin, cos] about z.
+#[inline(always)]
+fn turned_in_plane<V: Vector>((cos, sin): (V, V), s: [V; 6]) -> [V; 6] {
     let (cc, ss, cs) = (cos * cos, sin * sin, cos * sin);
     let [xx, yy, zz, xy, yz, zx] = s;
     let shear = (cs + cs) * xy;

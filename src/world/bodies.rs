@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Place, Result};
-use crate::material::{Kinematics, Material};
+use crate::material::Material;
 use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
 use crate::shape::ShapeKind;
@@ -116,7 +116,7 @@ impl<const D: usize> State<D> {
     /// What bodies of this world and a material carry.
     fn extras(&self, material: &Material) -> Extras {
         let Options { shape, transfer, body_force, .. } = self.options;
-        let gradient = material.model().kinematics == Kinematics::DeformationGradient;
+        let gradient = material.model().kinematics.carries_deformation_gradient();
         Extras {
             size: shape.is_sized(),
             body_force,

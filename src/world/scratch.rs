@@ -64,14 +64,18 @@ impl Scratch<'_> {
 
     /// The batch that the material sees, with `dt` and `time` zero.
     pub fn batch(&mut self) -> StressBatch<'_> {
-        let asked = |kind, slice| if self.kinematics == kind { slice } else { &[][..] };
+        let asked = |wanted, slice| if wanted { slice } else { &[][..] };
+        let velocity_gradient = self.kinematics == Kinematics::VelocityGradient;
         StressBatch {
             n: self.n,
             stride: self.stride,
             dt: 0.0,
             time: 0.0,
-            strain_increment: asked(Kinematics::StrainIncrement, &*self.strain_increment),
-            velocity_gradient: asked(Kinematics::VelocityGradient, &*self.velocity_gradient),
+            strain_increment: asked(
+                self.kinematics.takes_strain_increment(),
+                &*self.strain_increment,
+            ),
+            velocity_gradient: asked(velocity_gradient, &*self.velocity_gradient),
             deformation_gradient: &*self.deformation_gradient,
             stress0: &*self.stress0,
             state0: &*self.state0,

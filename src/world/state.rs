@@ -9,8 +9,8 @@ use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Lanes, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
-use crate::shape::WallTreatment;
 use crate::shape::stencil::At;
+use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
@@ -315,6 +315,7 @@ impl<const D: usize> State<D> {
                             transfer: options.transfer,
                             pic_rate: options.pic_rate,
                             axisymmetric: options.axisymmetric,
+                            resize: options.shape == ShapeKind::ContiguousGimp,
                             time: *time,
                             stopwatch: stopwatch.as_deref(),
                         };
@@ -380,6 +381,8 @@ pub struct Piece<'c, 's, const D: usize> {
     pub pic_rate: f64,
     /// Whether x is a radius.
     pub axisymmetric: bool,
+    /// Whether the domains of particles follow their stretch.
+    pub resize: bool,
     /// Time at the start of the step [s].
     pub time: f64,
     stopwatch: Option<&'s Stopwatch>,

@@ -15,6 +15,7 @@ mod header;
 mod host;
 mod invariants;
 mod kernels;
+mod objectivity;
 mod order;
 mod plugins;
 mod readme;

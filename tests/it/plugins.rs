@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Barrier, Mutex};
 use std::thread;
 
-const SHIPPED: [&str; 3] = ["linear_elastic", "drucker_prager", "newtonian"];
+const SHIPPED: [&str; 5] =
+    ["linear_elastic", "drucker_prager", "newtonian", "neo_hookean", "hencky"];
 
 fn context() -> Arc<Context> {
     Context::new(Some(1)).unwrap()
@@ -44,10 +45,14 @@ fn shipped_plugins_load_and_describe_their_models() {
         assert_eq!(plugin.licence_c.to_str().unwrap(), "MIT OR Apache-2.0");
         let model = context.model(name).unwrap();
         assert_eq!(model.name_c.to_str().unwrap(), *name);
-        assert_eq!(model.kinematics, Kinematics::StrainIncrement);
+        let expected =
+            if i < 3 { Kinematics::StrainIncrement } else { Kinematics::DeformationGradient };
+        assert_eq!(model.kinematics, expected);
         assert_eq!(model.inputs, [Input::Density]);
     }
-    assert_eq!(context.models().len(), 3);
+    assert_eq!(context.models().len(), 6);
+    let second = context.model("linear_elastic_green_naghdi").unwrap();
+    assert_eq!(second.kinematics, Kinematics::GreenNaghdi);
     let model = context.model("drucker_prager").unwrap();
     let keys: Vec<&str> = model.parameters.iter().map(|p| p.key).collect();
     assert_eq!(keys[..4], ["youngs_modulus", "poissons_ratio", "friction_angle", "cohesion"]);
@@ -161,7 +166,7 @@ fn every_bad_plugin_is_refused_with_its_reason() {
         ("no_wave_speed_output", invalid, &["LAHAR_OUTPUT_WAVE_SPEED"]),
         ("unknown_output", invalid, &["expected outputs among", "0x10000000001"]),
         ("unknown_input", invalid, &["wants input 3", "density"]),
-        ("unknown_kinematics", invalid, &["expected kinematics 0, 1 or 2, got 7"]),
+        ("unknown_kinematics", invalid, &["expected kinematics 0, 1, 2 or 3, got 7"]),
         ("small_table", invalid, &["plugin table", "struct_size", "got 16"]),
         ("small_parameters", invalid, &["expected parameters of at least", "got 8"]),
         ("no_models", invalid, &["at least one model"]),

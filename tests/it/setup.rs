@@ -23,7 +23,7 @@ pub fn context_with(threads: usize, isa: Isa) -> Arc<Context> {
 }
 
 fn with_plugins(context: Arc<Context>) -> Arc<Context> {
-    for plugin in ["linear_elastic", "drucker_prager", "newtonian"] {
+    for plugin in ["linear_elastic", "drucker_prager", "newtonian", "neo_hookean", "hencky"] {
         context.load_plugin(&plugin_path(plugin)).expect("a plugin");
     }
     context

@@ -21,12 +21,16 @@ pub const LAHAR_PLUGIN_ABI_MAJOR: u32 = 1;
 /// Minor version: tables may have grown at their ends since lower minors.
 pub const LAHAR_PLUGIN_ABI_MINOR: u32 = 0;
 
-/// The model takes the strain increment; the engine has rotated the start stress (and symmetric state) objectively.
+/// The model takes the strain increment; the engine has turned the start stress (and objective state) by exp(W dt), W = skw L:
+/// the Jaumann rate.
 pub const LAHAR_KINEMATICS_STRAIN_INCREMENT: i32 = 0;
 /// The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
 pub const LAHAR_KINEMATICS_VELOCITY_GRADIENT: i32 = 1;
 /// The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
 pub const LAHAR_KINEMATICS_DEFORMATION_GRADIENT: i32 = 2;
+/// The model takes the strain increment; the engine has turned the start stress (and objective state) by the increment of the
+/// rotation R of F = R U instead of by exp(W dt): the Green-Naghdi rate.
+pub const LAHAR_KINEMATICS_GREEN_NAGHDI: i32 = 3;
 
 /// A real number.
 pub const LAHAR_PARAMETER_REAL: i32 = 0;
@@ -264,7 +268,8 @@ pub struct lahar_model_desc {
     pub update: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// Wave speed (and diffusivity, if declared) from `stress0`, `state0` and `inputs`. Mandatory. [several threads]
+    /// Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
+    /// deformation gradient. Mandatory. [several threads]
     pub wave_speed: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,

@@ -240,6 +240,7 @@ impl PointLaw<2> for DruckerPrager {
             state1,
             wave_speed,
             diffusivity: 0.0,
+            energy: 0.0,
             status: if sane { PointStatus::Ok } else { PointStatus::Failed },
         }
     }

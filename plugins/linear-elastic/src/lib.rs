@@ -12,7 +12,7 @@ use std::ffi::CStr;
 pub static PLUGIN: Plugin = Plugin::new(
     c"org.lahar.linear_elastic",
     c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<LinearElastic>()],
+    &[ModelTable::of::<LinearElastic>(), ModelTable::of::<LinearElasticGreenNaghdi>()],
 )
 .author(c"The lahar developers")
 .licence(c"MIT OR Apache-2.0");
@@ -97,7 +97,7 @@ impl PointLaw<0> for LinearElastic {
         let volumetric = self.lambda * trace(strain);
         let two_g = 2.0 * self.shear_modulus;
         let stress1 = [
-            stress0[0] + volumetric + two_g * strain[0],
+            stress0[0] + volumetric + two_g * strain[0], // [STR-9]
             stress0[1] + volumetric + two_g * strain[1],
             stress0[2] + volumetric + two_g * strain[2],
             stress0[3] + two_g * strain[3],
@@ -111,7 +111,47 @@ impl PointLaw<0> for LinearElastic {
             state1: [],
             wave_speed,
             diffusivity: 0.0,
+            energy: 0.0,
             status: if sane { PointStatus::Ok } else { PointStatus::Failed },
         }
+    }
+}
+
+/// The same law on a stress that the engine turns with R of F = R U instead of with the spin.
+pub struct LinearElasticGreenNaghdi(LinearElastic);
+
+impl Model for LinearElasticGreenNaghdi {
+    const NAME: &'static CStr = c"linear_elastic_green_naghdi";
+    const SUMMARY: &'static CStr =
+        c"Isotropic linear elasticity in rate form with the Green-Naghdi rate";
+    const REFERENCE: &'static CStr =
+        c"Dienes: Acta Mechanica 32 (1979) 217-232, doi:10.1007/BF01379008";
+    const KINEMATICS: Kinematics = Kinematics::GreenNaghdi;
+    const PARAMETERS: &'static [Parameter] = LinearElastic::PARAMETERS;
+    const STATES: &'static [State] = LinearElastic::STATES;
+    const INPUTS: &'static [Input] = LinearElastic::INPUTS;
+    const OUTPUTS: Output = LinearElastic::OUTPUTS;
+
+    fn new(values: &[f64]) -> Result<Self, String> {
+        LinearElastic::new(values).map(Self)
+    }
+
+    #[inline(always)]
+    fn update(&self, batch: &mut Batch<'_>) {
+        batch.for_each_point(self);
+    }
+
+    #[inline(always)]
+    fn wave_speed(&self, batch: &mut Batch<'_>) {
+        self.0.wave_speed(batch);
+    }
+}
+
+impl PointLaw<0> for LinearElasticGreenNaghdi {
+    type Model = Self;
+
+    #[inline(always)]
+    fn update(&self, point: &Point<0>) -> Updated<0> {
+        PointLaw::update(&self.0, point)
     }
 }

@@ -1,8 +1,8 @@
 //! Element tests through the plugin table.
 #![forbid(unsafe_code)]
 
-use lahar_model_linear_elastic::LinearElastic;
-use lahar_plugin::abi::{LAHAR_POINT_FAILED, LAHAR_POINT_OK};
+use lahar_model_linear_elastic::{LinearElastic, LinearElasticGreenNaghdi};
+use lahar_plugin::abi::{LAHAR_KINEMATICS_GREEN_NAGHDI, LAHAR_POINT_FAILED, LAHAR_POINT_OK};
 use lahar_plugin::{Driver, ModelTable};
 
 const E: f64 = 2.0e6;
@@ -84,4 +84,23 @@ fn values_that_give_no_moduli_are_refused() {
     let model = ModelTable::of::<LinearElastic>().desc();
     let error = Driver::new(model, &[("youngs_modulus", 1e308), ("poissons_ratio", 0.4999)], 1);
     assert!(error.err().unwrap().contains("not finite"));
+}
+
+#[test]
+fn the_green_naghdi_variant_has_the_same_law_and_other_kinematics() {
+    let model = ModelTable::of::<LinearElasticGreenNaghdi>().desc();
+    assert_eq!(model.kinematics, LAHAR_KINEMATICS_GREEN_NAGHDI);
+    let values = [("youngs_modulus", E), ("poissons_ratio", NU)];
+    let (mut d, mut other) = (driver(13), Driver::new(model, &values, 13).unwrap());
+    for d in [&mut d, &mut other] {
+        for k in 0..13 {
+            d.set_strain_increment(k, strain(k));
+            d.set_stress(k, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        }
+        d.update(1e-3).unwrap();
+    }
+    for k in 0..13 {
+        assert_eq!(d.stress1(k), other.stress1(k));
+        assert_eq!(d.wave_speed_of(k), other.wave_speed_of(k));
+    }
 }

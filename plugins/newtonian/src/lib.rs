@@ -122,6 +122,7 @@ impl<P: Pressure> PointLaw<1> for Law<P> {
             state1: [j],
             wave_speed,
             diffusivity: self.kinematic / density,
+            energy: 0.0,
             status: if sane { PointStatus::Ok } else { PointStatus::Failed },
         }
     }

@@ -45,7 +45,7 @@ pub struct Batch<'a> {
     pub(crate) state1: &'a mut [f64],
     pub(crate) wave_speed: &'a mut [f64],
     pub(crate) diffusivity: &'a mut [f64],
-    energy: &'a mut [f64],
+    pub(crate) energy: &'a mut [f64],
     dt_factor: &'a mut [f64],
     pub(crate) status: &'a mut [i32],
 }
@@ -120,6 +120,12 @@ impl<'a> Batch<'a> {
     #[inline]
     pub fn deformation_gradient(&self, k: usize) -> Matrix3<f64> {
         Matrix3::from_row_slice(&self.gather::<9>(self.deformation_gradient, k))
+    }
+
+    /// The same row by row.
+    #[inline]
+    pub fn deformation_gradient_rows(&self, k: usize) -> [f64; 9] {
+        self.gather(self.deformation_gradient, k)
     }
 
     /// Cauchy stress of point `k` at the start [Pa].
@@ -286,6 +292,9 @@ impl<'a> Batch<'a> {
         if call != Call::InitState {
             require(self.state0, n.min(states), "state0")?;
             require(self.wave_speed, n, "wave_speed")?;
+            if M::KINEMATICS == Kinematics::DeformationGradient {
+                require(self.deformation_gradient, n, "deformation_gradient")?;
+            }
         }
         if call != Call::WaveSpeed {
             require(self.state1, n.min(states), "state1")?;
@@ -293,11 +302,11 @@ impl<'a> Batch<'a> {
         if call == Call::Update {
             require(self.stress1, n, "stress1")?;
             let (kinematics, name) = match M::KINEMATICS {
-                Kinematics::StrainIncrement => (self.strain_increment, "strain_increment"),
                 Kinematics::VelocityGradient => (self.velocity_gradient, "velocity_gradient"),
                 Kinematics::DeformationGradient => {
                     (self.deformation_gradient, "deformation_gradient")
                 }
+                _ => (self.strain_increment, "strain_increment"),
             };
             require(kinematics, n, name)?;
         }

@@ -84,7 +84,7 @@ impl Driver {
         let stride = n.next_multiple_of(8);
         let states = states(model);
         let components: usize = states.iter().map(|s| state_size(s.kind)).sum();
-        let gradient = if model.kinematics == LAHAR_KINEMATICS_STRAIN_INCREMENT { 6 } else { 9 };
+        let gradient = if takes_strain_increment(model.kinematics) { 6 } else { 9 };
         let mut driver = Self {
             model,
             instance,
@@ -168,6 +168,11 @@ impl Driver {
     /// Diffusivity of point `k` from the last call [m^2/s].
     pub fn diffusivity_of(&self, k: usize) -> f64 {
         self.diffusivity.get()[k]
+    }
+
+    /// Stored energy per current volume of point `k` from the last call [J/m^3].
+    pub fn energy_of(&self, k: usize) -> f64 {
+        self.energy.get()[k]
     }
 
     /// Status of point `k` from the last update: one of `LAHAR_POINT_*`.
@@ -259,7 +264,7 @@ impl Driver {
         };
         let kinematics = self.model.kinematics;
         let (strain, velocity, deformation) = (
-            given(kinematics == LAHAR_KINEMATICS_STRAIN_INCREMENT, &self.kinematics),
+            given(takes_strain_increment(kinematics), &self.kinematics),
             given(kinematics == LAHAR_KINEMATICS_VELOCITY_GRADIENT, &self.kinematics),
             given(kinematics == LAHAR_KINEMATICS_DEFORMATION_GRADIENT, &self.kinematics),
         );
@@ -373,6 +378,10 @@ unsafe fn table<'a, T>(base: *const T, count: u32) -> &'a [T] {
     }
     // SAFETY: told by the caller.
     unsafe { std::slice::from_raw_parts(base, count as usize) }
+}
+
+fn takes_strain_increment(kinematics: i32) -> bool {
+    [LAHAR_KINEMATICS_STRAIN_INCREMENT, LAHAR_KINEMATICS_GREEN_NAGHDI].contains(&kinematics)
 }
 
 fn state_size(kind: i32) -> usize {

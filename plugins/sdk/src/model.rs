@@ -43,7 +43,8 @@ pub trait Model: Sized + Send + Sync + 'static {
     /// its loops get those that every processor has. [`Batch::for_each_point`] is the short way.
     fn update(&self, batch: &mut Batch<'_>);
 
-    /// Writes the wave speed (and the diffusivity, if declared) of the points from start stress, start state and inputs.
+    /// Writes the wave speed (and the diffusivity, if declared) of the points from start stress, start state, inputs and,
+    /// if the model takes it, the deformation gradient.
     /// Compiled like `update`.
     fn wave_speed(&self, batch: &mut Batch<'_>);
 }

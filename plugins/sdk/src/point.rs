@@ -42,6 +42,8 @@ pub struct Updated<const S: usize> {
     pub wave_speed: f64,
     /// Kinematic diffusivity [m^2/s].
     pub diffusivity: f64,
+    /// Stored energy per current volume [J/m^3].
+    pub energy: f64,
     /// What became of the point.
     pub status: PointStatus,
 }
@@ -64,7 +66,6 @@ impl Batch<'_> {
     #[inline(always)]
     pub fn for_each_point<const S: usize, L: PointLaw<S>>(&mut self, law: &L) {
         const { assert!(S == state_components(L::Model::STATES), "S is not the size of the state") };
-        const { assert!(!L::Model::OUTPUTS.has(Output::ENERGY), "a law of a point gives no energy") };
         const { assert!(!L::Model::OUTPUTS.has(Output::DT_FACTOR), "a law of a point gives no factor") };
         // One variable per array: those that the model does not use cost nothing.
         let mut before = Before::<S> {
@@ -110,15 +111,13 @@ impl<const S: usize> Before<'_, S> {
     fn read<M: Model>(&mut self, batch: &Batch<'_>, first: usize, count: usize) {
         let stride = batch.stride;
         match M::KINEMATICS {
-            Kinematics::StrainIncrement => {
-                read(batch.strain_increment, stride, first, count, self.strain_increment);
-            }
             Kinematics::VelocityGradient => {
                 read(batch.velocity_gradient, stride, first, count, self.gradient);
             }
             Kinematics::DeformationGradient => {
                 read(batch.deformation_gradient, stride, first, count, self.gradient);
             }
+            _ => read(batch.strain_increment, stride, first, count, self.strain_increment),
         }
         read(batch.stress0, stride, first, count, self.stress0);
         read(batch.state0, stride, first, count, self.state0);
@@ -137,8 +136,10 @@ impl<const S: usize> Before<'_, S> {
             inputs: [0.0; MAX_INPUTS],
         };
         match M::KINEMATICS {
-            Kinematics::StrainIncrement => point.strain_increment = at(self.strain_increment, k),
-            _ => point.gradient = at(self.gradient, k),
+            Kinematics::VelocityGradient | Kinematics::DeformationGradient => {
+                point.gradient = at(self.gradient, k);
+            }
+            _ => point.strain_increment = at(self.strain_increment, k),
         }
         for i in 0..M::INPUTS.len() {
             point.inputs[i] = self.inputs[i].0[k];
@@ -176,6 +177,7 @@ struct After<const S: usize> {
     state1: [Column<f64>; S],
     wave_speed: Column<f64>,
     diffusivity: Column<f64>,
+    energy: Column<f64>,
     status: Column<i32>,
 }
 
@@ -187,6 +189,7 @@ impl<const S: usize> After<S> {
             state1: [EMPTY; S],
             wave_speed: EMPTY,
             diffusivity: EMPTY,
+            energy: EMPTY,
             status: Column([0; GROUP]),
         }
     }
@@ -203,6 +206,9 @@ impl<const S: usize> After<S> {
         if const { M::OUTPUTS.has(Output::DIFFUSIVITY) } {
             self.diffusivity.0[k] = point.diffusivity;
         }
+        if const { M::OUTPUTS.has(Output::ENERGY) } {
+            self.energy.0[k] = point.energy;
+        }
         self.status.0[k] = point.status as i32;
     }
 
@@ -217,6 +223,7 @@ impl<const S: usize> After<S> {
         }
         write(&self.wave_speed, batch.wave_speed, first, count);
         write(&self.diffusivity, batch.diffusivity, first, count);
+        write(&self.energy, batch.energy, first, count);
         write(&self.status, batch.status, first, count);
     }
 }

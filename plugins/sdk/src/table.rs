@@ -13,12 +13,14 @@ use std::ptr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Kinematics {
-    /// dt sym L [-]; the engine has rotated the start stress objectively.
+    /// dt sym L [-]; the engine has turned the start stress by exp(W dt), W = skw L (Jaumann).
     StrainIncrement = LAHAR_KINEMATICS_STRAIN_INCREMENT,
     /// L [1/s]; the model rotates the stress itself.
     VelocityGradient = LAHAR_KINEMATICS_VELOCITY_GRADIENT,
     /// F at the end of the step [-].
     DeformationGradient = LAHAR_KINEMATICS_DEFORMATION_GRADIENT,
+    /// dt sym L [-]; the engine has turned the start stress by the increment of the rotation R of F = R U.
+    GreenNaghdi = LAHAR_KINEMATICS_GREEN_NAGHDI,
 }
 
 /// A value that the engine gives beside the deformation, one per point.

@@ -14,6 +14,27 @@ pub fn from_matrix(a: &Matrix3<f64>) -> [f64; 6] {
     [a[(0, 0)], a[(1, 1)], a[(2, 2)], mean(0, 1), mean(1, 2), mean(2, 0)]
 }
 
+/// det F of a tensor given row by row.
+#[inline(always)]
+pub fn determinant(f: [f64; 9]) -> f64 {
+    let [a, b, c, d, e, g, h, i, j] = f;
+    a * (e * j - g * i) + b * (g * h - d * j) + c * (d * i - e * h)
+}
+
+/// The left Cauchy-Green tensor b = F Fᵀ of a deformation gradient given row by row.
+#[inline(always)]
+pub fn left_cauchy_green(f: [f64; 9]) -> [f64; 6] {
+    let [a, b, c, d, e, g, h, i, j] = f;
+    [
+        a * a + b * b + c * c,
+        d * d + e * e + g * g,
+        h * h + i * i + j * j,
+        a * d + b * e + c * g,
+        d * h + e * i + g * j,
+        a * h + b * i + c * j,
+    ]
+}
+
 /// a_xx + a_yy + a_zz.
 #[inline(always)]
 pub fn trace(a: [f64; 6]) -> f64 {

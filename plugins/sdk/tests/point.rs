@@ -21,7 +21,8 @@ impl Model for Everything {
     const STATES: &'static [State] =
         &[State::symmetric(c"a", c"-", c""), State::scalar(c"b", c"-", c"")];
     const INPUTS: &'static [Input] = &[Input::ElementLength, Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
+    const OUTPUTS: Output =
+        Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::ENERGY).and(Output::STATUS);
 
     fn new(_values: &[f64]) -> Result<Self, String> {
         Ok(Self)
@@ -48,6 +49,7 @@ impl PointLaw<7> for Everything {
             state1: point.state0.map(|s| 2.0 * s + length),
             wave_speed: density.sqrt(),
             diffusivity: math::ln(density) / 3.0,
+            energy: density - length,
             status: if closes { PointStatus::Failed } else { PointStatus::Ok },
         }
     }
@@ -78,6 +80,7 @@ fn a_law_sees_and_sets_the_values_of_its_point_bit_for_bit_at_every_level() {
                 let density = 2.0 + value(k, 31);
                 assert_eq!(d.wave_speed_of(k), density.sqrt());
                 assert_eq!(d.diffusivity_of(k), math::ln(density) / 3.0);
+                assert_eq!(d.energy_of(k), density - value(k, 30));
                 assert_eq!(d.status_of(k), status, "point {k} of {n}, {level:?}");
             }
         }

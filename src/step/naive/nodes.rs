@@ -4,14 +4,14 @@ use crate::boundary::Wall;
 use crate::shape::{ShapeKind, WallTreatment, textbook::weight_between};
 use crate::transfer::TransferKind;
 use crate::world::options::Options;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::{array::from_fn, collections::BTreeMap};
 
 /// A vector in D dimensions.
 pub type Vector<const D: usize> = SVector<f64, D>;
 /// A matrix in D dimensions.
 pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
-/// A particle: position, velocity, affine matrix, mass, volume, stress in the axes of the world and of the hoop, edges, body force.
+/// A particle: position, velocity, affine matrix, mass, volume, stress in the axes of the world and of the hoop, edges, body force, deformation gradient.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub struct Particle<const D: usize> {
@@ -24,6 +24,7 @@ pub struct Particle<const D: usize> {
     pub hoop_stress: f64,
     pub size: Vector<D>,
     pub body_force: Vector<D>,
+    pub f: Matrix3<f64>,
 }
 
 /// A node: mass, momentum, force, velocity, its increment, the velocity that particles take, and that gradients are taken of.
@@ -136,6 +137,19 @@ pub fn gather<const D: usize>(
     particles.iter().map(sum).collect()
 }
 
+/// A velocity gradient in three dimensions.
+fn in_space<const D: usize>(l: &Matrix<D>, hoop: f64) -> Matrix3<f64> {
+    let out_of_plane = |a, b| if D == 2 && (a, b) == (2, 2) { hoop } else { 0.0 };
+    Matrix3::from_fn(|a, b| if a < D && b < D { l[(a, b)] } else { out_of_plane(a, b) })
+}
+
+/// The diagonal of U in F = R U.
+fn stretch(f: &Matrix3<f64>) -> Vector3<f64> {
+    let e = (f.transpose() * f).symmetric_eigen();
+    let roots = Matrix3::from_diagonal(&e.eigenvalues.map(f64::sqrt));
+    (e.eigenvectors * roots * e.eigenvectors.transpose()).diagonal()
+}
+
 /// Volumes and stresses over `dt` with the gradients of a field of the grid.
 pub fn strain<const D: usize>(
     s: Setup<'_>,
@@ -150,7 +164,14 @@ pub fn strain<const D: usize>(
         let l: Matrix<D> = all.iter().map(|(i, _, dw, _)| grid[i].1[field] * dw.transpose()).sum();
         let radial: f64 = all.iter().map(|(i, w, ..)| w * grid[i].1[field][0]).sum();
         let hoop = if s.0.axisymmetric { radial / p.x[0] } else { 0.0 };
-        (p.x, p.volume) = (*moved, p.volume * ((l.trace() + hoop) * dt).exp());
+        let mut growth = ((l.trace() + hoop) * dt).exp();
+        if s.0.shape == ShapeKind::ContiguousGimp {
+            let step = in_space(&l, hoop) * dt + Matrix3::identity();
+            let (before, new) = (stretch(&p.f), step * p.f);
+            p.size.iter_mut().enumerate().for_each(|(d, x)| *x *= stretch(&new)[d] / before[d]);
+            (p.f, growth) = (new, step.determinant());
+        }
+        (p.x, p.volume) = (*moved, p.volume * growth);
         update(p, &l, hoop, dt);
     }
 }

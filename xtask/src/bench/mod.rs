@@ -68,13 +68,6 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         let threads = arguments.threads.unwrap_or(1);
         return measure::serve(scene, arguments.particles, threads, arguments.dt);
     }
-    let whole = arguments.scene.is_none();
-    if !whole && arguments.scene.as_deref() == Some(scenes::ABSENT) {
-        return Err(format!(
-            "{} is absent: the engine has no cubic shape function",
-            scenes::ABSENT
-        ));
-    }
     let scene = arguments.scene.as_deref().map(scenes::find).transpose()?;
     process::cargo(&["build", "--release", "--workspace"])?;
     if let Some(peer) = arguments.peer {
@@ -133,7 +126,7 @@ fn is_first(group: &[Case]) -> bool {
 fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<(), String> {
     let whole = arguments.scene.is_none();
     let mut checks = targets::judge(rows, arguments.particles, stick);
-    let mut tables = report::rows(rows, whole);
+    let mut tables = report::rows(rows);
     if whole && !arguments.json {
         let (table, of_models) = materials::measure()?;
         checks.extend(of_models);
@@ -141,7 +134,7 @@ fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<()
     }
     let tables = format!("{tables}\n{}", report::checks(&checks));
     if arguments.json {
-        print!("{}", report::json(rows, whole));
+        print!("{}", report::json(rows));
     } else {
         print!("{tables}");
     }

@@ -2,15 +2,13 @@
 
 use super::machine::Machine;
 use super::rounds::Row;
-use super::scenes::ABSENT;
 use super::stages::STAGES;
 use super::targets::Check;
 use crate::process;
-use serde_json::Value;
 use std::fmt::Write as _;
 
 /// The figures of every row, and the shares of the stages below.
-pub fn rows(rows: &[Row], with_absent: bool) -> String {
+pub fn rows(rows: &[Row]) -> String {
     let mut text = String::from(
         "| scene | particles | threads | simd | ns/particle/step | bytes/particle | copy GB/s | times memory limit |\n\
          |---|---:|---:|---|---:|---:|---:|---:|\n",
@@ -28,9 +26,6 @@ pub fn rows(rows: &[Row], with_absent: bool) -> String {
             row.copy() / 1e9,
             row.ratio()
         );
-    }
-    if with_absent {
-        let _ = writeln!(text, "| {ABSENT} | | | | absent | | | |");
     }
     text.push('\n');
     text.push_str(&shares(rows));
@@ -71,15 +66,8 @@ pub fn checks(checks: &[Check]) -> String {
 }
 
 /// One object a line.
-pub fn json(rows: &[Row], with_absent: bool) -> String {
-    let mut text: String = rows.iter().map(|row| format!("{}\n", row.to_json())).collect();
-    if with_absent && let Some(mut absent) = rows.first().map(Row::to_json) {
-        for (key, value) in absent.as_object_mut().into_iter().flatten() {
-            *value = if key == "scene" { ABSENT.into() } else { Value::Null };
-        }
-        let _ = writeln!(text, "{absent}");
-    }
-    text
+pub fn json(rows: &[Row]) -> String {
+    rows.iter().map(|row| format!("{}\n", row.to_json())).collect()
 }
 
 /// Appends tables to a file of docs/perf, under a heading that says when and on what they were measured.

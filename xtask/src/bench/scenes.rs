@@ -75,7 +75,7 @@ const ELASTIC_BOX: Scene = Scene {
 };
 
 /// The scenes that each have a row of targets, in the order of the tables.
-pub static SCENES: [Scene; 5] = [
+pub static SCENES: [Scene; 6] = [
     ELASTIC_BOX,
     Scene {
         name: "3d-quadratic-apic-drucker-prager-flow",
@@ -99,6 +99,7 @@ pub static SCENES: [Scene; 5] = [
         transfer: TransferKind::PicFlip,
         ..ELASTIC_BOX
     },
+    Scene { name: "3d-cubic-apic-elastic", shape: ShapeKind::CubicBspline, ..ELASTIC_BOX },
     Scene { name: "2d-quadratic-apic-elastic", dimension: 2, ..ELASTIC_BOX },
 ];
 
@@ -116,9 +117,6 @@ pub static FLIGHT: Scene = Scene {
     speed: 6.0,
     ..ELASTIC_BOX
 };
-
-/// A row of the targets whose shape function does not exist yet.
-pub const ABSENT: &str = "3d-cubic-apic-elastic";
 
 /// The scene with this name.
 pub fn find(name: &str) -> std::result::Result<&'static Scene, String> {
@@ -187,11 +185,11 @@ impl Scene {
         [ELASTIC[0].1, ELASTIC[1].1, self.density]
     }
 
-    /// Walls stand on node planes for linear and on half-cell planes for quadratic functions.
+    /// Walls stand on half-cell planes for quadratic functions, on node planes for others.
     fn options(&self, spacing: f64) -> Options {
         let shift = match self.shape {
-            ShapeKind::Linear => 0.0,
             ShapeKind::QuadraticBspline => 0.5 * spacing,
+            _ => 0.0,
         };
         let fall = if self.setting == Setting::Column { -GRAVITY } else { 0.0 };
         Options {

@@ -1,0 +1,36 @@
+//! Stage 6a, domains of contiguous-particle GIMP: edges follow the diagonal of the stretch U in F = R U.
+//!
+//! T. J. Charlton, W. M. Coombs, C. E. Augarde, Comput. Struct. 190 (2017) 108–125, doi:10.1016/j.compstruc.2017.05.004; the diagonal of U, which a
+//! rotation leaves alone, is the choice of W. M. Coombs, C. E. Augarde, M. Cortis et al., Comput. Methods Appl. Mech. Engrg. 358 (2020) 112622,
+//! doi:10.1016/j.cma.2019.112622.
+
+use super::update_strain::{deformation_gradient, deformed, gradient};
+use crate::simd::{Kernel, LANES, Vector};
+use crate::tensor::stretch_diagonal;
+use crate::world::state::Piece;
+
+/// Updates the edges of the particles of a chunk, whose deformation gradients are still those of the start.
+pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
+    piece.isa.dispatch(Domain(piece, dt));
+}
+
+struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+
+impl<const D: usize> Kernel for Domain<'_, '_, '_, D> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let Self(Piece { chunk, scratch, .. }, dt) = self;
+        for k in (0..chunk.len).step_by(LANES) {
+            let end = chunk.len.min(k + LANES);
+            let l = gradient::<V, D>(scratch.velocity_gradient, scratch.stride, (k, end));
+            let old = deformation_gradient(chunk, (k, end));
+            let (before, after) =
+                (stretch_diagonal(&old), stretch_diagonal(&deformed(&old, &l, dt)));
+            for d in 0..D {
+                let size = &mut chunk.column_mut(chunk.layout.size + d)[k..end];
+                (V::load(size) * after[d] / before[d]).store(size); // [SHP-6]
+            }
+        }
+    }
+}
