@@ -74,13 +74,14 @@ pub(super) fn deformed<V: Vector>(f: &Rows<V>, l: &Rows<V>, dt: f64) -> Rows<V> 
     })
 }
 
-/// det(I + dt L), by which the volume of what carries F grows.
+/// det(I + dt L), by which the volume of what carries F grows; not a number where a step turns a particle inside out.
 #[inline(always)]
 fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
     let step = each!(a in 3, b in 3 => {
         l[a][b].mul_add(V::splat(dt), V::splat(if a == b { 1.0 } else { 0.0 }))
     });
-    determinant(&step) // [STR-4]
+    let ratio = determinant(&step); // [STR-4]
+    ratio.sqrt().mul_add(V::splat(0.0), ratio)
 }
 
 /// Strain increment, start stress and volume; `F`: for particles that carry the deformation gradient.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
+use lahar::material::Material;
 use lahar::simd::Isa;
 use lahar::transfer::TransferKind;
 use lahar::world::World;
@@ -17,10 +18,15 @@ fn state_after_a_collision(
     isa: Isa,
     transfer: TransferKind,
     steps: usize,
+    models: [&str; 2],
 ) -> (Vec<u64>, usize) {
     let context = context_with(threads, isa);
-    let soft = elastic(&context, 1e5, 0.3);
-    let stiff = elastic(&context, 4e5, 0.2);
+    let elastic = |model: &str, e: f64, nu: f64| {
+        let values = [("youngs_modulus", e), ("poissons_ratio", nu)];
+        Material::new(&context, model, &values).expect("a material")
+    };
+    let soft = elastic(models[0], 1e5, 0.3);
+    let stiff = elastic(models[1], 4e5, 0.2);
     let options = Options {
         dimension: 3,
         spacing: 0.1,
@@ -54,12 +60,24 @@ fn state_after_a_collision(
     (bits, context.threads_used())
 }
 
+const RATE: [&str; 2] = ["linear_elastic", "linear_elastic"];
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits_for_models_that_need_the_deformation_gradient() {
+    let models = ["linear_elastic_green_naghdi", "neo_hookean"];
+    let run =
+        |threads| state_after_a_collision(threads, Isa::best(), TransferKind::Apic, 60, models);
+    let (one, two) = (run(1), run(2));
+    assert_eq!(two.1, 2, "the threads worked");
+    assert!(one.0 == two.0, "2 threads give other bits");
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for transfer in [TransferKind::PicFlip, TransferKind::Apic] {
-        let (one, _) = state_after_a_collision(1, Isa::best(), transfer, 200);
+        let (one, _) = state_after_a_collision(1, Isa::best(), transfer, 200, RATE);
         for threads in [2, 3, 8] {
-            let (bits, used) = state_after_a_collision(threads, Isa::best(), transfer, 200);
+            let (bits, used) = state_after_a_collision(threads, Isa::best(), transfer, 200, RATE);
             assert!(used >= 2, "of {threads} threads only {used} worked");
             assert!(bits == one, "{threads} threads give other bits than one");
         }
@@ -120,8 +138,8 @@ fn it_does_not_matter_what_a_thread_worked_on_before() {
 #[test]
 fn so_it_is_for_every_instruction_set() {
     for isa in Isa::all() {
-        let (one, _) = state_after_a_collision(1, isa, TransferKind::Apic, 50);
-        let (two, _) = state_after_a_collision(2, isa, TransferKind::Apic, 50);
+        let (one, _) = state_after_a_collision(1, isa, TransferKind::Apic, 50, RATE);
+        let (two, _) = state_after_a_collision(2, isa, TransferKind::Apic, 50, RATE);
         assert!(one == two, "{isa:?}: two threads give other bits than one");
     }
 }

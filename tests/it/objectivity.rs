@@ -3,6 +3,7 @@
 use std::ffi::CStr;
 use std::sync::Arc;
 
+use lahar::error::Status;
 use lahar::material::Material;
 use lahar::simd::Isa;
 use lahar::step::StepOrder;
@@ -54,8 +55,8 @@ impl Block {
         Self { world, body }
     }
 
-    /// Steps with the velocities L x.
-    fn drive(&mut self, l: Mat3, steps: usize) {
+    /// Gives the nodes the velocities L x in every step.
+    fn set_field(&mut self, l: Mat3) {
         let field = move |hook: HookArguments<'_>| {
             for node in 0..hook.nodes.count() {
                 let v = l * Vector3::from(hook.nodes.position(node));
@@ -63,6 +64,11 @@ impl Block {
             }
         };
         self.world.set_hook(HookPoint::AfterBoundaries, Some(Box::new(field)));
+    }
+
+    /// Steps with the velocities L x.
+    fn drive(&mut self, l: Mat3, steps: usize) {
+        self.set_field(l);
         for _ in 0..steps {
             self.world.step(Some(DT)).expect("a step");
         }
@@ -323,6 +329,20 @@ fn a_right_angle_turns_the_stress_of_every_kind_of_model_with_the_body() {
             let space = turn_defect(3, model, isa, Vector3::new(1.0, 2.0, 3.0));
             println!("{model}, {}: R σ Rᵀ to {plane:e} in 2D, {space:e} in 3D", isa.name());
             assert!(plane <= 1e-10 && space <= 1e-10, "{model}: {plane:e}, {space:e}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_turns_particles_inside_out_is_an_error() {
+    for (growth, good) in [(-0.9, true), (-1.1, false)] {
+        let mut block = Block::new(2, "follower", Isa::best());
+        let l = Mat3::from_diagonal(&Vector3::new(growth / DT, 0.0, 0.0));
+        block.set_field(l);
+        let result = block.world.step(Some(DT));
+        assert_eq!(result.is_ok(), good, "{result:?}");
+        if let Err(error) = result {
+            assert_eq!(error.status, Status::NonFinite, "{error}");
         }
     }
 }

@@ -4,12 +4,11 @@
 ///
 /// Cyclic Jacobi rotations, each of which makes one component zero: C. G. J. Jacobi, J. reine angew. Math. 30 (1846) 51–94,
 /// doi:10.1515/crll.1846.30.51. They converge quadratically, equal principal values are no special case, and the error of a
-/// value is a few units in the last place of the largest. Five sweeps do for 3x3 tensors.
+/// value is a few units in the last place of the largest. Four sweeps do for 3x3 tensors.
 #[inline(always)]
 pub fn principal(a: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut t = [[a[0], a[3], a[5]], [a[3], a[1], a[4]], [a[5], a[4], a[2]]];
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    sweep(&mut t, &mut v);
     sweep(&mut t, &mut v);
     sweep(&mut t, &mut v);
     sweep(&mut t, &mut v);
@@ -59,7 +58,8 @@ mod tests {
     fn axes_turn_the_tensor_into_its_principal_values() {
         for n in 0..20_000 {
             let x = |c: usize| ((n * 13 + c * 7 + 1) as f64).sin();
-            let mut values = Vector3::new(9f64.powf(x(0)), 9f64.powf(x(1)), 9f64.powf(x(2)));
+            let base = if n % 2 == 0 { 9f64 } else { 1e4 };
+            let mut values = Vector3::new(x(0), x(1), x(2)).map(|x| base.powf(x));
             match n % 7 {
                 0 => values[1] = values[0],
                 1 => values = Vector3::repeat(values[0]),

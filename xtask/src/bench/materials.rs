@@ -11,11 +11,13 @@ const FASTER: f64 = 1.5; // the best level over the baseline, whose vectors have
 
 /// A table of times, and for each model how much faster the best level is than the baseline.
 pub fn measure() -> Result<(String, Vec<Check>), String> {
-    let samples: [(&str, Driver); 4] = [
+    let samples: [(&str, Driver); 6] = [
         ("linear_elastic", lahar_model_linear_elastic::sample(POINTS)?),
         ("drucker_prager, all points plastic", lahar_model_drucker_prager::sample(POINTS)?),
         ("newtonian, exponent 7", lahar_model_newtonian::sample(7.0, POINTS)?),
         ("newtonian, exponent 7.15", lahar_model_newtonian::sample(7.15, POINTS)?),
+        ("neo_hookean", lahar_model_neo_hookean::sample(POINTS)?),
+        ("hencky", lahar_model_hencky::sample(POINTS)?),
     ];
     let mut text = String::from("| update of a model [ns/point] |");
     let levels: Vec<Level> = Level::ALL.into_iter().filter(|level| level.is_available()).collect();
