@@ -1,4 +1,7 @@
-//! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the momentum.
+//! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the momentum; then come the velocities that are
+//! [`prescribed`].
+
+pub mod prescribed;
 
 use std::ops::Range;
 
@@ -9,11 +12,18 @@ use crate::grid::key::block_nodes;
 use crate::grid::{EDGE, Key, Lanes};
 use crate::world::state::{Space, State, WallEntry};
 
+use prescribed::{prescribe, prescribe_again};
+
 /// Nodes this close to the reach of a wall, in cells, still count as reached: the round-off of positions.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Applies the walls to v_i and Δv_i and sums their forces on the material.
+/// Applies walls and prescribed velocities to v_i and Δv_i and sums their forces on the material.
 pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
+    apply_walls(world, dt);
+    prescribe(world, dt);
+}
+
+fn apply_walls<const D: usize>(world: &mut State<D>, dt: f64) {
     if world.walls.is_empty() {
         return;
     }
@@ -42,7 +52,7 @@ pub fn apply_boundaries<const D: usize>(world: &mut State<D>, dt: f64) {
     }
 }
 
-/// Turns the momentum of the second scatter (R1) into velocity and applies the walls to it.
+/// Turns the momentum of the second scatter (R1) into velocity and applies walls and prescribed velocities to it.
 pub fn apply_boundaries_again<const D: usize>(world: &mut State<D>) {
     for_each_block(world, |space, key, walls, r0, r1, _| {
         for (r0, r1) in r0.iter().zip(r1.iter_mut()) {
@@ -54,6 +64,7 @@ pub fn apply_boundaries_again<const D: usize>(world: &mut State<D>) {
             });
         }
     });
+    prescribe_again(world);
 }
 
 /// Applies a wall to the velocity in lanes 1 to D and gives the change.
@@ -65,7 +76,7 @@ fn constrain<const D: usize>(wall: &Wall, node: &mut Lanes) -> [f64; D] {
 }
 
 /// Calls `visit` with the places in block `key` of the nodes that the wall reaches.
-fn for_reached_nodes<const D: usize>(
+pub fn for_reached_nodes<const D: usize>(
     wall: &Wall,
     space: &Space<D>,
     key: &Key<D>,

@@ -5,6 +5,7 @@
 //! | how far may we go | dt | [`time_step`] |
 //! | sort particles into blocks | runs, tiles, active blocks | [`locate`](mod@locate) |
 //! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
+//! | add the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
 //! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
 //! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
 //! | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
@@ -14,6 +15,7 @@
 //! The last three go over a chunk of particles while it is in cache. [`naive`] is the same step as the textbook writes it.
 
 pub mod apply_boundaries;
+pub mod apply_tractions;
 pub mod grid_to_particles;
 pub mod locate;
 pub mod naive;
@@ -28,6 +30,7 @@ use crate::world::hooks::HookPoint;
 use crate::world::state::State;
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
+use apply_tractions::apply_tractions;
 use grid_to_particles::{Gather, grid_to_particles};
 use locate::locate;
 use particles_to_grid::{particles_to_grid, velocities_to_grid};
@@ -73,6 +76,7 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
 /// doi:10.1016/0045-7825(94)90112-0.
 fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     particles_to_grid(world);
+    apply_tractions(world, dt);
     world.hook(HookPoint::AfterScatter, dt);
     update_grid(world, dt);
     apply_boundaries(world, dt);
@@ -89,6 +93,7 @@ fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
 /// once: sand would swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
 fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     particles_to_grid(world);
+    apply_tractions(world, dt);
     world.hook(HookPoint::AfterScatter, dt);
     update_grid(world, dt);
     apply_boundaries(world, dt);

@@ -16,6 +16,7 @@ use crate::step::time_step::Limits;
 use crate::step::update_stress::Outcome;
 use crate::transfer::TransferKind;
 
+use super::conditions::Conditions;
 use super::dispatch::Kernels;
 use super::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
 use super::options::Options;
@@ -111,6 +112,8 @@ pub struct State<const D: usize> {
     pub bodies: Vec<Body>,
     /// The walls, in the order in which they were added.
     pub walls: Vec<WallEntry>,
+    /// The other conditions.
+    pub conditions: Conditions,
     /// Momentum that walls gave to the nodes of each block in a step.
     pub impulses: Vec<[f64; 3]>,
     /// Buffers of the sort.
@@ -144,6 +147,7 @@ impl<const D: usize> State<D> {
             options,
             bodies: Vec::new(),
             walls: Vec::new(),
+            conditions: Conditions::default(),
             impulses: Vec::new(),
             sorting: Sorting::default(),
             regroup: true,
