@@ -28,9 +28,10 @@ pub struct Equilibrium {
     pub kinetic_ratio: f64,
     /// Σ |F_i|, the forces that neither stresses nor supports balance [N].
     pub unbalanced_force: f64,
-    /// Sum of the sizes of the external forces: gravity, tractions, reactions [N].
+    /// Sum of the sizes of the forces that load the world: gravity, tractions, reactions of prescribed velocities; if there are none, the
+    /// reactions of walls [N].
     pub external_force: f64,
-    /// Unbalanced over external force [–].
+    /// Unbalanced over external force, see [CND-7] [–].
     pub unbalanced_ratio: f64,
 }
 
@@ -202,10 +203,13 @@ impl<const D: usize> State<D> {
         Ok(if c > 0.0 { 0.5 * sum / (c * c) } else { 0.0 })
     }
 
-    /// Sums of |F_i| and of the external forces, block by block in Morton order.
+    /// Sums of |F_i| and of the forces that load the world, block by block in Morton order.
+    ///
+    /// What supports take up is told from the force alone, as on a node at rest: a wall leaves of the force what it would leave of a
+    /// velocity.
     fn forces(&self, gravity: [f64; 3]) -> [f64; 2] {
         let loads = self.conditions.tractions.iter().map(|entry| size(&entry.force));
-        let (mut unbalanced, mut external) = (0.0, loads.sum::<f64>());
+        let (mut unbalanced, mut external, mut walls) = (0.0, loads.sum::<f64>(), 0.0);
         let space = self.space();
         for slot in self.grid.order() {
             let key = &self.grid.keys()[*slot as usize];
@@ -217,23 +221,24 @@ impl<const D: usize> State<D> {
                 force[n] = std::array::from_fn(|a| f[a + 1] + m * gravity[a]);
                 external += m * size(&gravity);
             }
-            let all = force;
-            for entry in &self.walls {
-                for_reached_nodes(&entry.wall, &space, key, |n| {
-                    force[n] = entry.wall.constrain(force[n]);
-                });
-            }
             for entry in &self.conditions.prescribed {
                 for_nodes_inside(&entry.condition, &space, key, |n| {
-                    (0..D).filter(|a| entry.condition.holds(*a)).for_each(|a| force[n][a] = 0.0);
+                    let held = |a: usize| entry.condition.holds(a);
+                    let free = std::array::from_fn(|a| if held(a) { 0.0 } else { force[n][a] });
+                    external += difference(&force[n], &free);
+                    force[n] = free;
                 });
             }
-            for (all, left) in all.iter().zip(&force) {
-                unbalanced += size(left);
-                external += size(&std::array::from_fn::<f64, D, _>(|a| all[a] - left[a]));
+            for entry in &self.walls {
+                for_reached_nodes(&entry.wall, &space, key, |n| {
+                    let free = entry.wall.constrain(force[n]);
+                    walls += difference(&force[n], &free);
+                    force[n] = free;
+                });
             }
+            unbalanced += force.iter().map(size).sum::<f64>();
         }
-        [unbalanced, external]
+        [unbalanced, if external > 0.0 { external } else { walls }]
     }
 
     fn level_ground(
@@ -322,6 +327,11 @@ impl<const D: usize> State<D> {
 /// Length of a vector.
 fn size<const N: usize>(v: &[f64; N]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// Length of the difference of two vectors.
+fn difference<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    size(&std::array::from_fn::<f64, N, _>(|c| a[c] - b[c]))
 }
 
 /// a / b; nothing over nothing is zero.

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::boundary::PrescribedVelocity;
 use crate::grid::key::block_nodes;
-use crate::grid::{EDGE, Key};
+use crate::grid::{EDGE, Key, Lanes};
 use crate::world::state::{Space, State};
 
 use super::ROUND_OFF;
@@ -14,14 +14,18 @@ use super::ROUND_OFF;
 /// Prescribes v_i and Δv_i, and sums the forces on the material.
 pub fn prescribe<const D: usize>(world: &mut State<D>, dt: f64) {
     let end = world.time + dt;
+    let (gravity, damped) = (world.gravity(world.time + 0.5 * dt), world.options.damping > 0.0);
     for n in 0..world.conditions.prescribed.len() {
         let target = world.conditions.prescribed[n].condition.velocity.at(end);
         let mut impulse = [0.0; 3];
-        for_each_prescribed(world, n, |a, r0, r1| {
-            let change = target[a] - r0[a + 1];
+        for_each_prescribed(world, n, |a, r0, r1, force| {
+            let (mass, change) = (r0[0], target[a] - r0[a + 1]);
+            if damped && r0[a + 1] != 0.0 {
+                impulse[a] -= dt * (force[a + 1] + mass * gravity[a]) - mass * r1[a + 1];
+            }
             r0[a + 1] = target[a]; // [CND-3]
             r1[a + 1] += change;
-            impulse[a] += r0[0] * change;
+            impulse[a] += mass * change;
         });
         let entry = &mut world.conditions.prescribed[n];
         entry.target = target;
@@ -33,15 +37,15 @@ pub fn prescribe<const D: usize>(world: &mut State<D>, dt: f64) {
 pub fn prescribe_again<const D: usize>(world: &mut State<D>) {
     for n in 0..world.conditions.prescribed.len() {
         let target = world.conditions.prescribed[n].target;
-        for_each_prescribed(world, n, |a, _, r1| r1[a + 1] = target[a]);
+        for_each_prescribed(world, n, |a, _, r1, _| r1[a + 1] = target[a]);
     }
 }
 
-/// Calls `visit` with every prescribed component of condition `n` and the records R0 and R1 of its node.
+/// Calls `visit` with every prescribed component of condition `n` and the records R0, R1 and force of its node.
 fn for_each_prescribed<const D: usize>(
     world: &mut State<D>,
     n: usize,
-    mut visit: impl FnMut(usize, &mut [f64; 4], &mut [f64; 4]),
+    mut visit: impl FnMut(usize, &mut Lanes, &mut Lanes, &Lanes),
 ) {
     let space = world.space();
     let State { grid, conditions, .. } = world;
@@ -54,7 +58,8 @@ fn for_each_prescribed<const D: usize>(
             let node = first + node;
             if grid.velocity[node][0] > 0.0 {
                 for a in (0..D).filter(|a| condition.holds(*a)) {
-                    visit(a, &mut grid.velocity[node], &mut grid.increment[node]);
+                    let (r0, r1) = (&mut grid.velocity[node], &mut grid.increment[node]);
+                    visit(a, r0, r1, &grid.force[node]);
                 }
             }
         });
