@@ -59,8 +59,8 @@ impl Table {
     /// The largest length of the vector of values in a span of time: it is that of an end or of a row, since the length of what changes
     /// linearly is convex.
     pub fn largest(&self, from: f64, until: f64) -> f64 {
-        let rows = self.times.partition_point(|t| *t <= from)
-            ..self.times.partition_point(|t| *t < until);
+        let rows =
+            self.times.partition_point(|t| *t <= from)..self.times.partition_point(|t| *t < until);
         let inside = self.values.get(rows).unwrap_or_default();
         let ends = [self.at(from), self.at(until)];
         ends.iter().chain(inside).map(length).fold(0.0, f64::max)
@@ -69,9 +69,8 @@ impl Table {
     /// The time of the last row [s]; negative infinity for a table that never changes.
     pub fn end(&self) -> f64 {
         match self.times[..] {
-            [_] => f64::NEG_INFINITY,
-            [.., last] => last,
-            [] => f64::NEG_INFINITY,
+            [_, .., last] => last,
+            _ => f64::NEG_INFINITY,
         }
     }
 }
@@ -93,7 +92,9 @@ mod tests {
     #[test]
     fn values_are_linear_between_rows_and_constant_outside() {
         let table = ramp();
-        for (time, y) in [(-1.0, 0.0), (1.0, 0.0), (2.0, -5.0), (3.0, -10.0), (3.5, -3.0), (9.0, 4.0)] {
+        for (time, y) in
+            [(-1.0, 0.0), (1.0, 0.0), (2.0, -5.0), (3.0, -10.0), (3.5, -3.0), (9.0, 4.0)]
+        {
             assert_eq!(table.at(time)[1], y, "at {time}");
         }
         assert_eq!(Table::constant([1.0, 2.0, 3.0]).at(-5.0), [1.0, 2.0, 3.0]);
@@ -103,9 +104,13 @@ mod tests {
     #[test]
     fn the_largest_value_of_a_span_is_found_at_its_ends_or_at_a_row() {
         let table = ramp();
-        for (from, until, largest) in
-            [(0.0, 0.5, 0.0), (0.0, 2.0, 5.0), (2.0, 3.5, 10.0), (5.0, f64::MAX, 5.0), (0.0, 1e9, 10.0)]
-        {
+        for (from, until, largest) in [
+            (0.0, 0.5, 0.0),
+            (0.0, 2.0, 5.0),
+            (2.0, 3.5, 10.0),
+            (5.0, f64::MAX, 5.0),
+            (0.0, 1e9, 10.0),
+        ] {
             assert_eq!(table.largest(from, until), largest, "{from} to {until}");
         }
     }

@@ -91,7 +91,8 @@ impl Traction {
                     (a.x[d] - b.x[d]).abs() < reach * a.size[d]
                 };
                 if (0..D).all(within) {
-                    let place = Place { body: Some(body), particle: Some(a.id), ..Place::default() };
+                    let place =
+                        Place { body: Some(body), particle: Some(a.id), ..Place::default() };
                     return Err(Error::invalid(format!(
                         "particles {} and {} of body {body} stand behind one another along the normal: the box of a \
                          traction must hold the outermost layer alone",

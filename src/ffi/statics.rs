@@ -205,10 +205,11 @@ pub unsafe extern "C" fn lahar_world_settle(
             // SAFETY: the host passes a filled struct.
             to_criteria(&unsafe { read_struct(criteria, "criteria") }?)?
         };
-        // SAFETY: the host passes NULL or a writable struct.
-        let place = match result.is_null() {
-            true => None,
-            false => Some(unsafe { struct_out(result, "result") }?),
+        let place = if result.is_null() {
+            None
+        } else {
+            // SAFETY: the host passes a writable struct.
+            Some(unsafe { struct_out(result, "result") }?)
         };
         let mut settled = Settled::default();
         let (steps, time, answer) = cell.advance(|w| {

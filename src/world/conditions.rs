@@ -1,7 +1,9 @@
 //! Conditions that depend on time: gravity by a table, velocities prescribed on the grid, tractions on surfaces.
 
+use crate::boundary::table::length;
 use crate::boundary::{PrescribedVelocity, Surface, Table, Traction};
 use crate::error::Result;
+use crate::step::time_step::Limits;
 
 use super::options::check_gravity;
 use super::state::State;
@@ -69,11 +71,11 @@ impl<const D: usize> State<D> {
     /// The stable time step [s], from the limits of particles and materials.
     ///
     /// What comes by tables counts with its largest value in the longest step that could be taken without it.
-    pub fn stable_dt(&self, limits: &crate::step::time_step::Limits) -> f64 {
+    pub fn stable_dt(&self, limits: &Limits) -> f64 {
         let options = &self.options;
         let (now, free) = (self.time, limits.stable_dt(options, 0.0));
         let gravity = match &self.conditions.gravity {
-            None => crate::boundary::table::length(&options.gravity),
+            None => length(&options.gravity),
             Some(table) => table.largest(now, now + 0.5 * free),
         };
         let mut dt = limits.stable_dt(options, gravity);

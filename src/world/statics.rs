@@ -172,7 +172,8 @@ impl<const D: usize> State<D> {
     fn equilibrium(&self, last_dt: f64) -> Result<Equilibrium> {
         let totals = self.totals(None);
         let stored = totals.strain_energy.abs().max(self.energy_of_stresses()?);
-        let [unbalanced_force, external_force] = self.forces(self.gravity(self.time - 0.5 * last_dt));
+        let [unbalanced_force, external_force] =
+            self.forces(self.gravity(self.time - 0.5 * last_dt));
         Ok(Equilibrium {
             kinetic_energy: totals.kinetic_energy,
             strain_energy: totals.strain_energy,

@@ -16,8 +16,7 @@ use lahar::world::statics::Criteria;
 
 use crate::setup::{a_box, context, context_with, elastic, fill, read, world};
 
-const EVERYWHERE: BoxRegion =
-    BoxRegion { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
+const EVERYWHERE: BoxRegion = BoxRegion { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
 
 /// Linear FLIP or quadratic APIC in two dimensions, with the walls where each wants them: on node planes, on half-cell planes.
 fn options(shape: ShapeKind, h: f64) -> Options {
@@ -34,13 +33,8 @@ fn options(shape: ShapeKind, h: f64) -> Options {
 }
 
 fn slip(world: &mut World, walls: &[(usize, i32, f64)]) -> Vec<i64> {
-    let wall = |(axis, side, position)| Wall {
-        axis,
-        side,
-        position,
-        kind: WallKind::Slip,
-        friction: 0.0,
-    };
+    let wall =
+        |(axis, side, position)| Wall { axis, side, position, kind: WallKind::Slip, friction: 0.0 };
     walls.iter().map(|w| world.add_wall(&wall(*w)).expect("a good wall")).collect()
 }
 
@@ -131,11 +125,11 @@ fn a_bar_that_is_pulled_by_its_end_answers_with_its_stiffness() {
         (ShapeKind::Linear, StepOrder::Musl),
         (ShapeKind::QuadraticBspline, StepOrder::Musl),
     ] {
-        let mut world =
-            world(&context, &Options { damping: 0.5, order, ..options(shape, h) });
+        let mut world = world(&context, &Options { damping: 0.5, order, ..options(shape, h) });
         let material = elastic(&context, e, 0.0);
         let wall = slip(&mut world, &[(0, 1, 0.0), (1, 1, 0.0), (1, -1, h)])[0];
-        let body = fill(&mut world, &material, &a_box([0.0; 3], [length, h, 0.0]), 1000.0, [0.0; 3]);
+        let body =
+            fill(&mut world, &material, &a_box([0.0; 3], [length, h, 0.0]), 1000.0, [0.0; 3]);
         // the nodes from the end of the bar outwards; with quadratic shapes the last half cell inside of it too
         let reach = if shape == ShapeKind::Linear { 0.0 } else { 0.5 * h };
         let velocity = table(&[0.0, 0.1, 0.2], &[[0.0; 3], [moved / 0.1, 0.0, 0.0], [0.0; 3]]);
@@ -152,7 +146,9 @@ fn a_bar_that_is_pulled_by_its_end_answers_with_its_stiffness() {
         let middle: Vec<f64> = (0..x.len() / 2).filter(in_middle).map(|k| stress[6 * k]).collect();
         let middle = middle.iter().sum::<f64>() / middle.len() as f64;
         let expected = 0.5 * 2.0 * moved / length * e;
-        println!("{shape:?} {order:?}: force {force:?}, support {support:?}, stress {middle}, closed form {expected}");
+        println!(
+            "{shape:?} {order:?}: force {force:?}, support {support:?}, stress {middle}, closed form {expected}"
+        );
         let (force, support) = (force[0] / h, support[0] / h);
         // quadratic shapes that walls leave as they are make the bar about 0.34 h shorter at either end
         let gate = if shape == ShapeKind::Linear { 2e-3 } else { 0.05 };
@@ -230,7 +226,9 @@ fn a_traction_leaves_the_right_stress_in_the_last_cell() {
     for (shape, held) in [(linear, true), (linear, false), (quadratic, false)] {
         for order in [StepOrder::Usl, StepOrder::Musl] {
             let (error, steps) = traction_bar(shape, order, held, false);
-            println!("{shape:?} {order:?} held {held}: worst particle {error:.2e} after {steps} steps");
+            println!(
+                "{shape:?} {order:?} held {held}: worst particle {error:.2e} after {steps} steps"
+            );
             assert!(error <= 0.02, "{shape:?} {order:?}: worst particle {error}");
         }
     }
@@ -295,7 +293,8 @@ fn a_column_under_a_gravity_ramp_settles_to_the_closed_form() {
         let ramp = table(&[0.0, 2.5], &[[0.0; 3], [0.0, -9.81 * scale, 0.0]]);
         world.set_gravity_table(Some(ramp)).expect("a good table");
         let before = read(&world, body, "position");
-        let strict = Criteria { kinetic_ratio: 1e-8, unbalanced_ratio: 1e-5, ..Criteria::default() };
+        let strict =
+            Criteria { kinetic_ratio: 1e-8, unbalanced_ratio: 1e-5, ..Criteria::default() };
         let (settled, result) = world.settle(&strict);
         result.expect("a settlement");
         assert!(settled.converged, "{settled:?}");
@@ -325,7 +324,6 @@ fn a_column_under_a_gravity_ramp_settles_to_the_closed_form() {
             assert!(worst <= 1e-3, "settlement {worst}");
             assert!(rms <= 5e-3, "stress {rms}");
         }
-
     }
 }
 

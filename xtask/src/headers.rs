@@ -9,8 +9,23 @@ use std::path::{Path, PathBuf};
 
 /// Files of `src/ffi` in the order of the header: a type stands before its first use.
 const SECTIONS: [&str; 17] = [
-    "status", "version", "context", "error", "model", "material", "world", "body", "field", "view",
-    "wall", "table", "prescribed_velocity", "traction", "statics", "grid", "output",
+    "status",
+    "version",
+    "context",
+    "error",
+    "model",
+    "material",
+    "world",
+    "body",
+    "field",
+    "view",
+    "wall",
+    "table",
+    "prescribed_velocity",
+    "traction",
+    "statics",
+    "grid",
+    "output",
 ];
 
 /// Writes the headers and the symbol list, or with `check` reports those that differ from the sources.
