@@ -10,7 +10,7 @@ mod support;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lahar::boundary::{Wall, WallKind};
+use lahar::boundary::{BoxRegion, PrescribedVelocity, Table, Traction, Wall, WallKind};
 use lahar::step::StepOrder;
 use lahar::world::World;
 use lahar::world::options::Options;
@@ -65,9 +65,24 @@ fn bouncing_blocks(threads: usize, order: StepOrder) -> World {
         }
     }
     let (a, b) = (a_box([0.2; 3], [1.2, 1.1, 1.0]), a_box([1.3; 3], [2.2; 3]));
-    fill(&mut world, &stiff, &a, 1000.0, [3.0, -2.0, 4.0]);
+    let loaded = fill(&mut world, &stiff, &a, 1000.0, [3.0, -2.0, 4.0]);
     fill(&mut world, &stiff, &b, 1000.0, [-5.0, -3.0, 1.0]);
+    add_conditions(&mut world, loaded);
     world
+}
+
+/// Gravity by a table, a load on the top of a body, and a current along one side.
+fn add_conditions(world: &mut World, body: i64) {
+    let table = |a, b| Table::new("the test", &[0.0, 1.0], &[a, b]).expect("a good table");
+    let gravity = table([0.0, 0.0, -9.81], [1.0, 0.0, -8.0]);
+    world.set_gravity_table(Some(gravity)).expect("a good table");
+    let region = BoxRegion { min: [0.0, 0.0, 0.95], max: [1.3, 1.3, 1.0] };
+    let traction = table([0.0, 0.0, -100.0], [0.0, 50.0, 0.0]);
+    world.add_traction(Traction { body, region, axis: 2, side: 1, traction }).expect("a surface");
+    let region = BoxRegion { min: [0.0, 0.0, 0.0], max: [0.3, 3.0, 3.0] };
+    let velocity = table([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
+    let current = PrescribedVelocity { region, components: 2, velocity };
+    world.add_prescribed_velocity(current).expect("a good condition");
 }
 
 /// Allocations in 200 steps after 200 others, and the blocks that came and went meanwhile.

@@ -74,6 +74,10 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_WALL_SLIP = 1_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_WALL_SEPARATING = 2_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_WALL_FRICTION = 3_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_COMPONENT_X = 1_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_COMPONENT_Y = 2_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_COMPONENT_Z = 4_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_STEPS_BETWEEN_CHECKS = 50_c_int32_t
   integer(c_int64_t), parameter, public :: LAHAR_ALL_BODIES = -1_c_int64_t
 
   type, bind(c), public :: lahar_plugin_info
@@ -211,6 +215,62 @@ module lahar
     real(c_double) :: position = 0.0_c_double
     real(c_double) :: friction = 0.0_c_double
   end type lahar_wall
+
+  type, bind(c), public :: lahar_table
+    integer(c_int64_t) :: count = 0
+    type(c_ptr) :: times = c_null_ptr
+    type(c_ptr) :: values = c_null_ptr
+  end type lahar_table
+
+  type, bind(c), public :: lahar_prescribed_velocity
+    integer(c_int32_t) :: struct_size = 0
+    integer(c_int32_t) :: components = 0
+    real(c_double) :: box_min(3) = 0.0_c_double
+    real(c_double) :: box_max(3) = 0.0_c_double
+    real(c_double) :: velocity(3) = 0.0_c_double
+    type(lahar_table) :: table
+  end type lahar_prescribed_velocity
+
+  type, bind(c), public :: lahar_traction
+    integer(c_int32_t) :: struct_size = 0
+    integer(c_int32_t) :: axis = 0
+    integer(c_int32_t) :: side = 0
+    integer(c_int32_t) :: reserved = 0
+    integer(c_int64_t) :: body = 0
+    real(c_double) :: box_min(3) = 0.0_c_double
+    real(c_double) :: box_max(3) = 0.0_c_double
+    real(c_double) :: traction(3) = 0.0_c_double
+    type(lahar_table) :: factors
+  end type lahar_traction
+
+  type, bind(c), public :: lahar_equilibrium
+    integer(c_int32_t) :: struct_size = 0
+    integer(c_int32_t) :: reserved = 0
+    real(c_double) :: kinetic_energy = 0.0_c_double
+    real(c_double) :: strain_energy = 0.0_c_double
+    real(c_double) :: kinetic_ratio = 0.0_c_double
+    real(c_double) :: unbalanced_force = 0.0_c_double
+    real(c_double) :: external_force = 0.0_c_double
+    real(c_double) :: unbalanced_ratio = 0.0_c_double
+  end type lahar_equilibrium
+
+  type, bind(c), public :: lahar_settle_criteria
+    integer(c_int32_t) :: struct_size = 0
+    integer(c_int32_t) :: reserved = 0
+    real(c_double) :: kinetic_ratio = 0.0_c_double
+    real(c_double) :: unbalanced_ratio = 0.0_c_double
+    integer(c_int64_t) :: max_steps = 0
+    real(c_double) :: until = 0.0_c_double
+  end type lahar_settle_criteria
+
+  type, bind(c), public :: lahar_settle_result
+    integer(c_int32_t) :: struct_size = 0
+    integer(c_int32_t) :: converged = 0
+    integer(c_int64_t) :: steps = 0
+    real(c_double) :: time = 0.0_c_double
+    real(c_double) :: kinetic_ratio = 0.0_c_double
+    real(c_double) :: unbalanced_ratio = 0.0_c_double
+  end type lahar_settle_result
 
   type, bind(c), public :: lahar_grid_statistics
     integer(c_int32_t) :: struct_size = 0
@@ -828,6 +888,144 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_wall_reaction
 
+    function lahar_prescribed_velocity_init(condition, size) &
+        bind(c, name="lahar_prescribed_velocity_init") result(answer)
+      import :: c_int32_t, c_int64_t, lahar_prescribed_velocity
+      implicit none
+      type(lahar_prescribed_velocity), intent(inout), optional :: condition
+      integer(c_int64_t), value :: size
+      integer(c_int32_t) :: answer
+    end function lahar_prescribed_velocity_init
+
+    function lahar_prescribed_velocity_add(world, condition, id) &
+        bind(c, name="lahar_prescribed_velocity_add") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr, lahar_prescribed_velocity
+      implicit none
+      type(c_ptr), value :: world
+      type(lahar_prescribed_velocity), intent(in), optional :: condition
+      integer(c_int64_t), intent(inout), optional :: id(*)
+      integer(c_int32_t) :: answer
+    end function lahar_prescribed_velocity_add
+
+    function lahar_prescribed_velocity_remove(world, id) &
+        bind(c, name="lahar_prescribed_velocity_remove") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: id
+      integer(c_int32_t) :: answer
+    end function lahar_prescribed_velocity_remove
+
+    function lahar_prescribed_velocity_reaction(world, id, force) &
+        bind(c, name="lahar_prescribed_velocity_reaction") result(answer)
+      import :: c_double, c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: id
+      real(c_double), intent(inout), optional :: force(3)
+      integer(c_int32_t) :: answer
+    end function lahar_prescribed_velocity_reaction
+
+    function lahar_traction_init(traction, size) &
+        bind(c, name="lahar_traction_init") result(answer)
+      import :: c_int32_t, c_int64_t, lahar_traction
+      implicit none
+      type(lahar_traction), intent(inout), optional :: traction
+      integer(c_int64_t), value :: size
+      integer(c_int32_t) :: answer
+    end function lahar_traction_init
+
+    function lahar_traction_add(world, traction, id) &
+        bind(c, name="lahar_traction_add") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr, lahar_traction
+      implicit none
+      type(c_ptr), value :: world
+      type(lahar_traction), intent(in), optional :: traction
+      integer(c_int64_t), intent(inout), optional :: id(*)
+      integer(c_int32_t) :: answer
+    end function lahar_traction_add
+
+    function lahar_traction_remove(world, id) &
+        bind(c, name="lahar_traction_remove") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: id
+      integer(c_int32_t) :: answer
+    end function lahar_traction_remove
+
+    function lahar_traction_force(world, id, particles, area, force) &
+        bind(c, name="lahar_traction_force") result(answer)
+      import :: c_double, c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: id
+      integer(c_int64_t), intent(inout), optional :: particles(*)
+      real(c_double), intent(inout), optional :: area(*)
+      real(c_double), intent(inout), optional :: force(3)
+      integer(c_int32_t) :: answer
+    end function lahar_traction_force
+
+    function lahar_world_set_gravity_table(world, count, times, values) &
+        bind(c, name="lahar_world_set_gravity_table") result(answer)
+      import :: c_double, c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in), optional :: times(*)
+      real(c_double), intent(in), optional :: values(*)
+      integer(c_int32_t) :: answer
+    end function lahar_world_set_gravity_table
+
+    function lahar_world_equilibrium(world, equilibrium) &
+        bind(c, name="lahar_world_equilibrium") result(answer)
+      import :: c_int32_t, c_ptr, lahar_equilibrium
+      implicit none
+      type(c_ptr), value :: world
+      type(lahar_equilibrium), intent(inout), optional :: equilibrium
+      integer(c_int32_t) :: answer
+    end function lahar_world_equilibrium
+
+    function lahar_settle_criteria_init(criteria, size) &
+        bind(c, name="lahar_settle_criteria_init") result(answer)
+      import :: c_int32_t, c_int64_t, lahar_settle_criteria
+      implicit none
+      type(lahar_settle_criteria), intent(inout), optional :: criteria
+      integer(c_int64_t), value :: size
+      integer(c_int32_t) :: answer
+    end function lahar_settle_criteria_init
+
+    function lahar_world_settle(world, criteria, result) &
+        bind(c, name="lahar_world_settle") result(answer)
+      import :: c_int32_t, c_ptr, lahar_settle_criteria, lahar_settle_result
+      implicit none
+      type(c_ptr), value :: world
+      type(lahar_settle_criteria), intent(in), optional :: criteria
+      type(lahar_settle_result), intent(inout), optional :: result
+      integer(c_int32_t) :: answer
+    end function lahar_world_settle
+
+    function lahar_body_set_k0_stress(world, body, surface_level, unit_weight, k0) &
+        bind(c, name="lahar_body_set_k0_stress") result(answer)
+      import :: c_double, c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: body
+      real(c_double), value :: surface_level
+      real(c_double), value :: unit_weight
+      real(c_double), value :: k0
+      integer(c_int32_t) :: answer
+    end function lahar_body_set_k0_stress
+
+    function lahar_body_init_state(world, body) &
+        bind(c, name="lahar_body_init_state") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: body
+      integer(c_int32_t) :: answer
+    end function lahar_body_init_state
+
     function lahar_grid_stats(world, statistics) &
         bind(c, name="lahar_grid_stats") result(answer)
       import :: c_int32_t, c_ptr, lahar_grid_statistics
@@ -992,6 +1190,20 @@ module lahar
   public :: lahar_wall_add
   public :: lahar_wall_remove
   public :: lahar_wall_reaction
+  public :: lahar_prescribed_velocity_init
+  public :: lahar_prescribed_velocity_add
+  public :: lahar_prescribed_velocity_remove
+  public :: lahar_prescribed_velocity_reaction
+  public :: lahar_traction_init
+  public :: lahar_traction_add
+  public :: lahar_traction_remove
+  public :: lahar_traction_force
+  public :: lahar_world_set_gravity_table
+  public :: lahar_world_equilibrium
+  public :: lahar_settle_criteria_init
+  public :: lahar_world_settle
+  public :: lahar_body_set_k0_stress
+  public :: lahar_body_init_state
   public :: lahar_grid_stats
   public :: lahar_grid_blocks
   public :: lahar_grid_find_node
@@ -1036,9 +1248,12 @@ module lahar
     procedure :: create => world_create
     procedure :: free => world_free
     procedure :: set_gravity => world_set_gravity
+    procedure :: set_gravity_table => world_set_gravity_table
     procedure :: set_damping => world_set_damping
     procedure :: step => world_step
     procedure :: advance => world_advance
+    procedure :: settle => world_settle
+    procedure :: equilibrium => world_equilibrium
     procedure :: stable_dt => world_stable_dt
     procedure :: time => world_time
     procedure :: last_dt => world_last_dt
@@ -1064,6 +1279,14 @@ module lahar
     procedure :: add_wall => world_add_wall
     procedure :: remove_wall => world_remove_wall
     procedure :: wall_reaction => world_wall_reaction
+    procedure :: add_prescribed_velocity => world_add_prescribed_velocity
+    procedure :: remove_prescribed_velocity => world_remove_prescribed_velocity
+    procedure :: prescribed_velocity_reaction => world_prescribed_velocity_reaction
+    procedure :: add_traction => world_add_traction
+    procedure :: remove_traction => world_remove_traction
+    procedure :: traction_force => world_traction_force
+    procedure :: set_k0_stress => world_set_k0_stress
+    procedure :: init_state => world_init_state
     procedure :: grid_statistics => world_grid_statistics
     procedure :: find_node => world_find_node
     procedure :: sample => world_sample
@@ -1079,6 +1302,7 @@ module lahar
   end type lahar_view
 
   public :: lahar_default_options, lahar_default_fill, lahar_default_wall, lahar_message
+  public :: lahar_default_prescribed_velocity, lahar_default_traction, lahar_default_settle_criteria
 
 contains
 
@@ -1232,6 +1456,19 @@ contains
     character(*), intent(inout), optional :: errmsg
     call finish(lahar_world_set_gravity(self%handle, gravity), stat, errmsg)
   end subroutine world_set_gravity
+
+  !> Sets gravity values(3, row) [m/s^2] at times(row) [s], linear in between, from the next step on.
+  subroutine world_set_gravity_table(self, times, values, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    real(c_double), intent(in) :: times(:), values(:, :)
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    if (size(values, 1) /= 3 .or. size(values, 2) /= size(times)) then
+      call refuse('world%set_gravity_table: values must have the shape (3, size(times))', stat, errmsg)
+      return
+    end if
+    call finish(lahar_world_set_gravity_table(self%handle, size(times, kind=c_int64_t), times, values), stat, errmsg)
+  end subroutine world_set_gravity_table
 
   !> Sets the local damping [-], in [0, 1), from the next step on.
   subroutine world_set_damping(self, damping, stat, errmsg)
@@ -1643,6 +1880,199 @@ contains
     force = 0
     call finish(lahar_wall_reaction(self%handle, id, force), stat, errmsg)
   end function world_wall_reaction
+
+  ! ---- prescribed velocities
+
+  !> A prescribed velocity with its defaults; components and the box have none and must be set.
+  function lahar_default_prescribed_velocity() result(condition)
+    type(lahar_prescribed_velocity) :: condition
+    call finish(lahar_prescribed_velocity_init(condition, int(c_sizeof(condition), c_int64_t)))
+  end function lahar_default_prescribed_velocity
+
+  !> Adds a prescribed velocity; with a table, velocities(3, row) [m/s] at times(row) [s] instead of a constant one.
+  subroutine world_add_prescribed_velocity(self, condition, times, velocities, id, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    type(lahar_prescribed_velocity), intent(in) :: condition
+    real(c_double), intent(in), optional :: times(:), velocities(:, :)
+    integer(c_int64_t), intent(out), optional :: id
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(lahar_prescribed_velocity) :: filled
+    real(c_double), allocatable, target :: t(:), v(:, :)
+    integer(c_int64_t) :: found(1)
+    integer(c_int32_t) :: status
+    found = -1
+    if (present(id)) id = -1
+    filled = condition
+    if (present(times) .neqv. present(velocities)) then
+      call refuse('world%add_prescribed_velocity: times and velocities go together', stat, errmsg)
+      return
+    end if
+    if (present(times) .and. present(velocities)) then
+      if (size(velocities, 1) /= 3 .or. size(velocities, 2) /= size(times)) then
+        call refuse('world%add_prescribed_velocity: velocities must have the shape (3, size(times))', stat, errmsg)
+        return
+      end if
+      allocate (t, source=times)
+      allocate (v, source=velocities)
+      filled%table%count = size(t, kind=c_int64_t)
+      filled%table%times = c_loc(t)
+      filled%table%values = c_loc(v)
+    end if
+    status = lahar_prescribed_velocity_add(self%handle, filled, found)
+    if (present(id)) id = found(1)
+    call finish(status, stat, errmsg)
+  end subroutine world_add_prescribed_velocity
+
+  !> Removes a prescribed velocity.
+  subroutine world_remove_prescribed_velocity(self, id, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: id
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_prescribed_velocity_remove(self%handle, id), stat, errmsg)
+  end subroutine world_remove_prescribed_velocity
+
+  !> Force of the prescribed velocity on the material in the last step [N].
+  function world_prescribed_velocity_reaction(self, id, stat, errmsg) result(force)
+    class(lahar_world), intent(in) :: self
+    integer(c_int64_t), intent(in) :: id
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double) :: force(3)
+    force = 0
+    call finish(lahar_prescribed_velocity_reaction(self%handle, id, force), stat, errmsg)
+  end function world_prescribed_velocity_reaction
+
+  ! ---- tractions
+
+  !> A traction with its defaults; body and box have none and must be set.
+  function lahar_default_traction() result(traction)
+    type(lahar_traction) :: traction
+    call finish(lahar_traction_init(traction, int(c_sizeof(traction), c_int64_t)))
+  end function lahar_default_traction
+
+  !> Adds a traction; with a table it is multiplied by factors(row) [-] at times(row) [s].
+  subroutine world_add_traction(self, traction, times, factors, id, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    type(lahar_traction), intent(in) :: traction
+    real(c_double), intent(in), optional :: times(:), factors(:)
+    integer(c_int64_t), intent(out), optional :: id
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(lahar_traction) :: filled
+    real(c_double), allocatable, target :: t(:), f(:)
+    integer(c_int64_t) :: found(1)
+    integer(c_int32_t) :: status
+    found = -1
+    if (present(id)) id = -1
+    filled = traction
+    if (present(times) .neqv. present(factors)) then
+      call refuse('world%add_traction: times and factors go together', stat, errmsg)
+      return
+    end if
+    if (present(times) .and. present(factors)) then
+      if (size(factors) /= size(times)) then
+        call refuse('world%add_traction: times and factors differ in length', stat, errmsg)
+        return
+      end if
+      allocate (t, source=times)
+      allocate (f, source=factors)
+      filled%factors%count = size(t, kind=c_int64_t)
+      filled%factors%times = c_loc(t)
+      filled%factors%values = c_loc(f)
+    end if
+    status = lahar_traction_add(self%handle, filled, found)
+    if (present(id)) id = found(1)
+    call finish(status, stat, errmsg)
+  end subroutine world_add_traction
+
+  !> Removes a traction.
+  subroutine world_remove_traction(self, id, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: id
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_traction_remove(self%handle, id), stat, errmsg)
+  end subroutine world_remove_traction
+
+  !> Force of the traction on its body in the last step [N]; the number of particles that carry it and their area [m^2].
+  function world_traction_force(self, id, particles, area, stat, errmsg) result(force)
+    class(lahar_world), intent(in) :: self
+    integer(c_int64_t), intent(in) :: id
+    integer(c_int64_t), intent(out), optional :: particles
+    real(c_double), intent(out), optional :: area
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double) :: force(3), of_area(1)
+    integer(c_int64_t) :: count(1)
+    force = 0
+    of_area = 0
+    count = 0
+    call finish(lahar_traction_force(self%handle, id, count, of_area, force), stat, errmsg)
+    if (present(particles)) particles = count(1)
+    if (present(area)) area = of_area(1)
+  end function world_traction_force
+
+  ! ---- statics
+
+  !> Criteria with their defaults.
+  function lahar_default_settle_criteria() result(criteria)
+    type(lahar_settle_criteria) :: criteria
+    call finish(lahar_settle_criteria_init(criteria, int(c_sizeof(criteria), c_int64_t)))
+  end function lahar_default_settle_criteria
+
+  !> How far the world is from equilibrium.
+  function world_equilibrium(self, stat, errmsg) result(equilibrium)
+    class(lahar_world), intent(in) :: self
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(lahar_equilibrium) :: equilibrium
+    equilibrium%struct_size = int(c_sizeof(equilibrium), c_int32_t)
+    call finish(lahar_world_equilibrium(self%handle, equilibrium), stat, errmsg)
+  end function world_equilibrium
+
+  !> Steps until the world is in equilibrium, or until steps or time have run out: converged tells, which is optional like the
+  !> whole result.
+  subroutine world_settle(self, criteria, converged, settled, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    type(lahar_settle_criteria), intent(in), optional :: criteria
+    logical, intent(out), optional :: converged
+    type(lahar_settle_result), intent(out), optional :: settled
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(lahar_settle_result) :: found
+    integer(c_int32_t) :: status
+    found%struct_size = int(c_sizeof(found), c_int32_t)
+    status = lahar_world_settle(self%handle, criteria, found)
+    if (present(converged)) converged = found%converged == 1
+    if (present(settled)) settled = found
+    call finish(status, stat, errmsg)
+  end subroutine world_settle
+
+  !> Stress of level ground at rest in a body, with its surface at a coordinate along gravity [m]; without `unit_weight`
+  !> [N/m^3] that of the body under present gravity.
+  subroutine world_set_k0_stress(self, body, surface_level, k0, unit_weight, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: body
+    real(c_double), intent(in) :: surface_level, k0
+    real(c_double), intent(in), optional :: unit_weight
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    real(c_double) :: weight
+    weight = 0
+    if (present(unit_weight)) weight = unit_weight
+    call finish(lahar_body_set_k0_stress(self%handle, body, surface_level, weight, k0), stat, errmsg)
+  end subroutine world_set_k0_stress
+
+  !> Lets the model of a body derive its state from the present stresses, as when the body was added.
+  subroutine world_init_state(self, body, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: body
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_body_init_state(self%handle, body), stat, errmsg)
+  end subroutine world_init_state
 
   ! ---- grid
 

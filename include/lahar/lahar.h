@@ -1091,6 +1091,297 @@ lahar_status lahar_wall_remove(lahar_world *world, int64_t id);
 // Thread: callback-ok
 lahar_status lahar_wall_reaction(const lahar_world *world, int64_t id, double force[3]);
 
+/* ---- table -------------------------------------------------------------------------------------
+ *
+ * Tables of the host: values over time, piecewise linear between the rows. Before the first row and after the last one the
+ * values of that row hold.
+ */
+
+// A table over time. Times must increase, and all numbers be finite.
+typedef struct lahar_table {
+    // Number of rows; 0: no table, the condition is constant.
+    int64_t count;
+    // Times [s], shape [count]. Read during the call only.
+    const double *times;
+    // Values, shape as said where the table is used. Read during the call only.
+    const double *values;
+} lahar_table;
+
+/* ---- prescribed_velocity -----------------------------------------------------------------------
+ *
+ * Velocities prescribed on regions of the grid, constant or by a table over time, named by ids that are never used again.
+ */
+
+// Component of a vector: x.
+#define LAHAR_COMPONENT_X 1
+
+// Component of a vector: y.
+#define LAHAR_COMPONENT_Y 2
+
+// Component of a vector: z.
+#define LAHAR_COMPONENT_Z 4
+
+// A velocity that the nodes in a box have at the end of every step, whatever pulls at them. Fill it with
+// lahar_prescribed_velocity_init, then set `components`, the box and what else is wanted.
+//
+// The box stays where it is in space and holds nodes, not particles: it prescribes what moves through it. It comes after
+// the walls, and where boxes overlap the one that was added last counts.
+typedef struct lahar_prescribed_velocity {
+    // sizeof(lahar_prescribed_velocity); set by lahar_prescribed_velocity_init.
+    uint32_t struct_size;
+    // The components that are prescribed, a sum of LAHAR_COMPONENT_*; has no default. The others stay free.
+    int32_t components;
+    // Lower corner of the box [m], shape [3]; may be -infinity; has no default. Nodes on its faces, to 1e-9 of the spacing,
+    // are inside.
+    double box_min[3];
+    // Upper corner of the box [m], shape [3]; may be infinity; has no default.
+    double box_max[3];
+    // Velocity [m/s], shape [3], finite; default 0. Not used with a table.
+    double velocity[3];
+    // Velocity over time: values [m/s], shape [count, 3]. Default: no table.
+    lahar_table table;
+} lahar_prescribed_velocity;
+
+// Fills the struct with its defaults.
+//
+// `size`: sizeof(lahar_prescribed_velocity).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_prescribed_velocity_init(lahar_prescribed_velocity *condition, int64_t size);
+
+// Adds a prescribed velocity. The stable time step keeps it, too, below `cfl` spacings a step.
+//
+// `condition`: copied, with its table. `id`: gets the id; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (components; a box that is not
+// set or inverted; a velocity that is not finite; a row of the table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_prescribed_velocity_add(lahar_world *world,
+                                           const lahar_prescribed_velocity *condition,
+                                           int64_t *id);
+
+// Removes a prescribed velocity. Its id is not used again.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_prescribed_velocity_remove(lahar_world *world, int64_t id);
+
+// Force of a prescribed velocity on the material in the last step: the momentum it gave over the time step.
+//
+// `force`: written [N], shape [3].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_prescribed_velocity_reaction(const lahar_world *world, int64_t id, double force[3]);
+
+/* ---- traction ----------------------------------------------------------------------------------
+ *
+ * Tractions on the surfaces of bodies, constant or by a table over time, named by ids that are never used again.
+ */
+
+// A traction on a plane surface of a body. Fill it with lahar_traction_init, then set `body`, the normal, the box and the
+// traction.
+//
+// It is a dead load: force per area of the surface as it was when the body was added, in a fixed direction. The particles
+// with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
+// particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
+// centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
+// wide. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+typedef struct lahar_traction {
+    // sizeof(lahar_traction); set by lahar_traction_init.
+    uint32_t struct_size;
+    // Axis of the outward normal: 0 x, 1 y, 2 z; default 0.
+    int32_t axis;
+    // 1: the normal points to larger coordinates (default); -1: to smaller.
+    int32_t side;
+    // Must be 0.
+    int32_t reserved;
+    // Id of the body; has no default.
+    int64_t body;
+    // Lower corner of the box [m], shape [3]; may be -infinity; has no default.
+    double box_min[3];
+    // Upper corner of the box [m], shape [3]; may be infinity; has no default.
+    double box_max[3];
+    // The traction vector [Pa], shape [3], finite; default 0. A pressure p on a surface whose normal points to larger y
+    // is (0, -p, 0).
+    double traction[3];
+    // Factors of the traction over time: values [-], shape [count]. Default: no table, the factor is 1.
+    lahar_table factors;
+} lahar_traction;
+
+// Fills the struct with its defaults.
+//
+// `size`: sizeof(lahar_traction).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_traction_init(lahar_traction *traction, int64_t size);
+
+// Adds a traction. It goes when its body is removed.
+//
+// `traction`: copied, with its table. `id`: gets the id; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
+// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle, or with particles behind
+// one another along the normal; particles whose edge lengths are not known; a traction that is not finite; a row of the
+// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_traction_add(lahar_world *world,
+                                const lahar_traction *traction,
+                                int64_t *id);
+
+// Removes a traction. Its id is not used again.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_traction_remove(lahar_world *world, int64_t id);
+
+// What a traction loads.
+//
+// `particles`: gets the number of particles that carry it; may be NULL.
+// `area`: gets their area [m^2]; may be NULL.
+// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_traction_force(const lahar_world *world,
+                                  int64_t id,
+                                  int64_t *particles,
+                                  double *area,
+                                  double force[3]);
+
+/* ---- statics -----------------------------------------------------------------------------------
+ *
+ * Statics by dynamics: gravity by a table, how far a world is from equilibrium, steps until it is reached, initial
+ * stresses.
+ */
+
+// Steps between two looks at the equilibrium in lahar_world_settle.
+#define LAHAR_STEPS_BETWEEN_CHECKS 50
+
+// How far a world is from equilibrium.
+typedef struct lahar_equilibrium {
+    // sizeof(lahar_equilibrium); set by the host.
+    uint32_t struct_size;
+    // 0.
+    int32_t reserved;
+    // Sum of m v^2 / 2 of the particles [J].
+    double kinetic_energy;
+    // Strain energy of the particles [J], as in lahar_totals: what the stresses worked since the start.
+    double strain_energy;
+    // Kinetic energy over the energy of the stresses [-]: the larger of |strain_energy| and the sum of
+    // V s:s / (2 rho c^2), with the stress s and the largest wave speed c, which knows of initial stresses too. 0 at
+    // rest.
+    double kinetic_ratio;
+    // Sum over the nodes of |F| [N], with the force F of stresses, tractions and gravity that neither walls nor prescribed
+    // velocities take up. Damping is no part of it: it vanishes in equilibrium.
+    double unbalanced_force;
+    // What loads the world [N]: the sum over the nodes of m |g|, the forces of the tractions, and the sum over the
+    // nodes of the reactions of prescribed velocities. If all these are 0, the sum of the reactions of walls.
+    double external_force;
+    // unbalanced_force over external_force [-]. 0 if nothing is unbalanced.
+    double unbalanced_ratio;
+} lahar_equilibrium;
+
+// When a world counts as settled. Fill it with lahar_settle_criteria_init.
+typedef struct lahar_settle_criteria {
+    // sizeof(lahar_settle_criteria); set by lahar_settle_criteria_init.
+    uint32_t struct_size;
+    // Must be 0.
+    int32_t reserved;
+    // Largest `kinetic_ratio` of lahar_equilibrium [-], > 0; default 1e-4.
+    double kinetic_ratio;
+    // Largest `unbalanced_ratio` of lahar_equilibrium [-], > 0; default 1e-3.
+    double unbalanced_ratio;
+    // Most steps, >= 1; default 1000000.
+    int64_t max_steps;
+    // Time of the world at which to give up [s], after the present one; default infinity.
+    double until;
+} lahar_settle_criteria;
+
+// What lahar_world_settle did.
+typedef struct lahar_settle_result {
+    // sizeof(lahar_settle_result); set by the host.
+    uint32_t struct_size;
+    // 1: both criteria hold; 0: steps or time ran out before.
+    int32_t converged;
+    // Number of committed steps.
+    int64_t steps;
+    // Time that was reached [s].
+    double time;
+    // `kinetic_ratio` of lahar_equilibrium at the last look [-].
+    double kinetic_ratio;
+    // `unbalanced_ratio` of lahar_equilibrium at the last look [-].
+    double unbalanced_ratio;
+} lahar_settle_result;
+
+// Sets gravity by a table over time, piecewise linear, from the next step on: a ramp, a shaking. A step takes it at its
+// middle, and stable_dt counts with the largest that can come in it. lahar_world_set_gravity brings constant gravity back.
+//
+// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2], shape [count, 3].
+// Before the first row and after the last one the values of that row hold.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not increase, a value that is not
+// finite; the text names the row), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_world_set_gravity_table(lahar_world *world,
+                                           int64_t count,
+                                           const double *times,
+                                           const double *values);
+
+// Tells how far a world is from equilibrium, by the forces of the last step; before the first step, and after an initial
+// stress was set, by those of the particles as they are. Costs about as much as a part of a step.
+//
+// `equilibrium`: written; the host has set `struct_size`.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a model has no wave speed for the
+// present state), LAHAR_ERROR_BUSY.
+// Thread: callback-ok
+lahar_status lahar_world_equilibrium(const lahar_world *world,
+                                     lahar_equilibrium *equilibrium);
+
+// Fills the criteria with their defaults.
+//
+// `size`: sizeof(lahar_settle_criteria).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
+// Thread: any
+lahar_status lahar_settle_criteria_init(lahar_settle_criteria *criteria, int64_t size);
+
+// Steps of the stable length until the world is in equilibrium, or until steps or time have run out, which is no error:
+// `converged` tells. It looks every LAHAR_STEPS_BETWEEN_CHECKS steps, and does not stop before the last row of every table in
+// use has passed. Set lahar_world_set_damping before, for instance to 0.3 to 0.7, or nothing comes to rest.
+//
+// `criteria`: copied; NULL: the defaults. `result`: written, on failure too; the host has set `struct_size`; may be NULL.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not positive, and if the stable step
+// is infinite and `until` too. A positive status means that no partial step was committed.
+// Thread: owner
+lahar_status lahar_world_settle(lahar_world *world,
+                                const lahar_settle_criteria *criteria,
+                                lahar_settle_result *result);
+
+// Gives the particles of a body the stress of level ground at rest: at the depth z below the surface the stress along
+// gravity is -unit_weight z, along the other two axes k0 times that; shear is 0, and so is all stress above the surface.
+// The model derives its state from the stress, as when a body is added, so that what it remembered is lost.
+//
+// A field of the host's own: give `stress` in lahar_particles, or write the field "stress" and call
+// lahar_body_init_state.
+//
+// `surface_level`: coordinate of the surface along the axis of gravity [m].
+// `unit_weight`: [N/m^3], > 0; or 0: mass over volume of the whole body, times gravity at the present time.
+// `k0`: ratio of horizontal to vertical stress [-], >= 0.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity is 0 at the present time or
+// not along an axis; a value out of its range; the model refuses the stress), LAHAR_ERROR_UNSUPPORTED (the stress of the
+// model follows from the deformation gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_set_k0_stress(lahar_world *world,
+                                      int64_t body,
+                                      double surface_level,
+                                      double unit_weight,
+                                      double k0);
+
+// Lets the model of a body derive its state variables anew from the present stresses, as when the body was added: for
+// instance the volume ratio of a fluid from its pressure. What it remembered is lost. To be called after the host wrote
+// the field "stress".
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the model refuses the stress; the old
+// state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_init_state(lahar_world *world,
+                                   int64_t body);
+
 /* ---- grid --------------------------------------------------------------------------------------
  *
  * The sparse background grid: blocks of nodes that follow the material. It shows the last committed step; before the
@@ -1365,6 +1656,50 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, side) == 8);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, kind) == 12);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, position) == 16);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_wall, friction) == 24);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_table) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_table, count) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_table, times) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_table, values) == 16);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_prescribed_velocity) == 104);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, components) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, box_min) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, box_max) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, velocity) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_prescribed_velocity, table) == 80);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_traction) == 120);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, axis) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, side) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, reserved) == 12);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, body) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, box_min) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, box_max) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, traction) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_traction, factors) == 96);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_equilibrium) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, kinetic_energy) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, strain_energy) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, kinetic_ratio) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, unbalanced_force) == 32);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, external_force) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_equilibrium, unbalanced_ratio) == 48);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_settle_criteria) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, kinetic_ratio) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, unbalanced_ratio) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, max_steps) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_criteria, until) == 32);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_settle_result) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, converged) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, steps) == 8);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, time) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, kinetic_ratio) == 24);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_settle_result, unbalanced_ratio) == 32);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_view_info) == 40);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_view_info, components) == 4);

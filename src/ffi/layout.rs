@@ -58,6 +58,26 @@ layout! {
     lahar_wall: 32 {
         struct_size: 0, axis: 4, side: 8, kind: 12, position: 16, friction: 24,
     }
+    lahar_table: 24 {
+        count: 0, times: 8, values: 16,
+    }
+    lahar_prescribed_velocity: 104 {
+        struct_size: 0, components: 4, box_min: 8, box_max: 32, velocity: 56, table: 80,
+    }
+    lahar_traction: 120 {
+        struct_size: 0, axis: 4, side: 8, reserved: 12, body: 16, box_min: 24, box_max: 48,
+        traction: 72, factors: 96,
+    }
+    lahar_equilibrium: 56 {
+        struct_size: 0, reserved: 4, kinetic_energy: 8, strain_energy: 16, kinetic_ratio: 24,
+        unbalanced_force: 32, external_force: 40, unbalanced_ratio: 48,
+    }
+    lahar_settle_criteria: 40 {
+        struct_size: 0, reserved: 4, kinetic_ratio: 8, unbalanced_ratio: 16, max_steps: 24, until: 32,
+    }
+    lahar_settle_result: 40 {
+        struct_size: 0, converged: 4, steps: 8, time: 16, kinetic_ratio: 24, unbalanced_ratio: 32,
+    }
     lahar_view_info: 40 {
         struct_size: 0, components: 4, data: 8, count: 16, stride: 24, generation: 32,
     }

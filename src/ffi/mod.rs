@@ -20,7 +20,11 @@ pub mod grid;
 pub mod material;
 pub mod model;
 pub mod output;
+pub mod prescribed_velocity;
+pub mod statics;
 pub mod status;
+pub mod table;
+pub mod traction;
 pub mod version;
 pub mod view;
 pub mod wall;
@@ -35,6 +39,12 @@ mod public {
     pub(super) use super::grid::lahar_grid_statistics;
     pub(super) use super::model::{lahar_model_info, lahar_parameter_info, lahar_state_info};
     pub(super) use super::output::lahar_totals;
+    pub(super) use super::prescribed_velocity::lahar_prescribed_velocity;
+    pub(super) use super::statics::{
+        lahar_equilibrium, lahar_settle_criteria, lahar_settle_result,
+    };
+    pub(super) use super::table::lahar_table;
+    pub(super) use super::traction::lahar_traction;
     pub(super) use super::view::lahar_view_info;
     pub(super) use super::wall::lahar_wall;
     pub(super) use super::world::lahar_world_options;

@@ -105,9 +105,9 @@ impl<const D: usize> Grid<D> {
         &self.place
     }
 
-    /// The keys by slot, with the records R0 and R1 of their nodes.
-    pub fn keys_and_records(&mut self) -> (&[Key<D>], &mut [Lanes], &mut [Lanes]) {
-        (&self.keys, &mut self.velocity, &mut self.increment)
+    /// The keys by slot, with the records R0 and R1 of their nodes to write, and the forces.
+    pub fn keys_and_records(&mut self) -> (&[Key<D>], &mut [Lanes], &mut [Lanes], &[Lanes]) {
+        (&self.keys, &mut self.velocity, &mut self.increment, &self.force)
     }
 
     /// Slot of the block with this key.

@@ -5,6 +5,7 @@
 //! | how far may we go | dt | [`time_step`] |
 //! | sort particles into blocks | runs, tiles, active blocks | [`locate`](mod@locate) |
 //! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
+//! | add the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
 //! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
 //! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
 //! | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
@@ -15,6 +16,7 @@
 //! The last three go over a chunk of particles while it is in cache. [`naive`] is the same step as the textbook writes it.
 
 pub mod apply_boundaries;
+pub mod apply_tractions;
 pub mod filter_velocities;
 pub mod grid_to_particles;
 pub mod locate;
@@ -31,6 +33,7 @@ use crate::world::hooks::HookPoint;
 use crate::world::state::State;
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
+use apply_tractions::apply_tractions;
 use filter_velocities::filter_velocities;
 use grid_to_particles::{Gather, grid_to_particles};
 use locate::locate;
@@ -85,6 +88,7 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
 /// From particles to the new velocities of the grid: what all orders have in common.
 fn move_grid<const D: usize>(world: &mut State<D>, dt: f64) {
     particles_to_grid(world);
+    apply_tractions(world, dt);
     world.hook(HookPoint::AfterScatter, dt);
     update_grid(world, dt);
     apply_boundaries(world, dt);

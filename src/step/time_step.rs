@@ -39,10 +39,9 @@ impl Limits {
         }
     }
 
-    /// The stable time step [s]; infinity if nothing moves, pulls or resists.
-    pub fn stable_dt(&self, options: &Options) -> f64 {
+    /// The stable time step [s] with gravity `g` [m/s²]; infinity if nothing moves, pulls or resists.
+    pub fn stable_dt(&self, options: &Options, g: f64) -> f64 {
         let (h, s) = (options.spacing, self.speed);
-        let g = options.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let wave = 2.0 * options.cfl * h / (s + (s * s + 4.0 * g * options.cfl * h).sqrt());
         let viscous = options.cfl * h * h / (2.0 * options.dimension as f64 * self.diffusivity);
         wave.min(viscous).min(self.wanted_dt)

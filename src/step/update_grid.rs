@@ -19,7 +19,7 @@ const NODES: usize = 1024;
 
 /// Turns momentum and force into velocity (R0) and its increment (R1).
 pub fn update_grid<const D: usize>(world: &mut State<D>, dt: f64) {
-    let (gravity, damping) = (world.options.gravity, world.options.damping);
+    let (gravity, damping) = (world.gravity(world.time + 0.5 * dt), world.options.damping); // [CND-2]
     let mut g = [0.0; LANES]; // of two nodes
     for a in 0..D {
         (g[1 + a], g[5 + a]) = (gravity[a], gravity[a]);

@@ -257,7 +257,7 @@ fn sizes(arrays: &ParticleArrays<'_>, n: usize, dimension: usize) -> Result<Size
 }
 
 /// Fills the state with initial values and lets the model derive it from stress and density.
-fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
+pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
     let Body { material, particles, .. } = body;
     let layout = particles.layout;
     let mut first = layout.state;

@@ -3,6 +3,7 @@
 //! [`World`] is the façade that the C ABI wraps; [`state::State`] is what the stages of a step work on, in two or three dimensions.
 
 pub mod bodies;
+pub mod conditions;
 pub mod dispatch;
 pub mod fields;
 pub mod hooks;
@@ -11,6 +12,7 @@ pub mod options;
 pub mod queries;
 pub mod scratch;
 pub mod state;
+pub mod statics;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -25,6 +27,7 @@ use crate::particles::fields::NODE_FIELDS;
 use crate::particles::seeding::{Fill, Region};
 use crate::shape::WallTreatment;
 use crate::step;
+use crate::step::apply_tractions::apply_tractions;
 use crate::step::locate::locate;
 use crate::step::particles_to_grid::particles_to_grid;
 use crate::step::time_step::limits_of_state;
@@ -32,7 +35,7 @@ use crate::step::update_grid::update_grid;
 
 use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
-use options::{Options, check_damping, check_gravity};
+use options::{Options, check_damping};
 use queries::Totals;
 use state::{State, Stopwatch, WallEntry};
 
@@ -95,14 +98,6 @@ impl World {
         on!(&self, s => &s.options)
     }
 
-    /// Sets gravity [m/s²] from the next step on.
-    pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<()> {
-        self.check_alive()?;
-        check_gravity(gravity)?;
-        on!(&mut self, s => s.options.gravity = gravity);
-        Ok(())
-    }
-
     /// Sets local non-viscous damping from the next step on.
     pub fn set_damping(&mut self, damping: f64) -> Result<()> {
         self.check_alive()?;
@@ -144,6 +139,7 @@ impl World {
         on!(&mut self, s => {
             let at = s.body_position(body)?;
             s.bodies.remove(at);
+            s.conditions.remove_body(body);
             s.particles_changed();
         });
         Ok(())
@@ -323,7 +319,7 @@ impl World {
                 Some(limits) => limits,
                 None => limits_of_state(s)?,
             };
-            Ok(limits.stable_dt(&s.options))
+            Ok(s.stable_dt(&limits))
         })
     }
 
@@ -377,6 +373,7 @@ impl World {
             context.install(|| {
                 locate(&mut **s)?;
                 particles_to_grid(&mut **s);
+                apply_tractions(&mut **s, 0.0);
                 update_grid(&mut **s, 0.0);
                 Ok(())
             })

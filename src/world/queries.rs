@@ -64,7 +64,7 @@ impl<const D: usize> State<D> {
         x[..D].copy_from_slice(&p.get::<D>(layout.position, k));
         v[..D].copy_from_slice(&p.get::<D>(layout.velocity, k));
         let affine = self.affine_spin(body, k);
-        let g = self.options.gravity;
+        let g = self.gravity(self.time);
         let cross = |a: usize, b: usize| m * (x[a] * v[b] - x[b] * v[a]);
         [
             m,

@@ -18,6 +18,7 @@ use crate::step::time_step::Limits;
 use crate::step::update_stress::Outcome;
 use crate::transfer::TransferKind;
 
+use super::conditions::Conditions;
 use super::dispatch::Kernels;
 use super::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
 use super::options::Options;
@@ -140,6 +141,8 @@ pub struct State<const D: usize> {
     pub bodies: Vec<Body>,
     /// The walls, in the order in which they were added.
     pub walls: Vec<WallEntry>,
+    /// The other conditions.
+    pub conditions: Conditions,
     /// Momentum that walls gave to the nodes of each block in a step.
     pub impulses: Vec<[f64; 3]>,
     /// Velocities of nodes on their way through a filter; used by filtered transfers alone.
@@ -175,6 +178,7 @@ impl<const D: usize> State<D> {
             options,
             bodies: Vec::new(),
             walls: Vec::new(),
+            conditions: Conditions::default(),
             impulses: Vec::new(),
             filtered: Vec::new(),
             sorting: Sorting::default(),

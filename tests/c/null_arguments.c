@@ -267,6 +267,56 @@ static void wall_and_grid_functions(void) {
   NULL_ALLOWED(lahar_grid_sample, inside, (world, "mass", 1, point, numbers, NULL));
 }
 
+static void condition_functions(void) {
+  const double gravity[3] = {0, -9.81, 0}, time = 0;
+  lahar_prescribed_velocity velocity;
+  lahar_traction traction;
+  lahar_equilibrium equilibrium = {0};
+  lahar_settle_criteria criteria;
+  lahar_settle_result result = {0};
+  int d;
+  equilibrium.struct_size = sizeof equilibrium;
+  result.struct_size = sizeof result;
+  NULL_REFUSED(lahar_world_set_gravity_table, world, (NULL, 1, &time, gravity));
+  NULL_REFUSED(lahar_world_set_gravity_table, times, (world, 1, NULL, gravity));
+  NULL_REFUSED(lahar_world_set_gravity_table, values, (world, 1, &time, NULL));
+  OK(lahar_prescribed_velocity_init(&velocity, sizeof velocity));
+  velocity.components = LAHAR_COMPONENT_X;
+  for (d = 0; d < 3; ++d) velocity.box_min[d] = velocity.box_max[d] = -9;
+  NULL_REFUSED(lahar_prescribed_velocity_init, condition, (NULL, sizeof velocity));
+  NULL_REFUSED(lahar_prescribed_velocity_add, world, (NULL, &velocity, &integer));
+  NULL_REFUSED(lahar_prescribed_velocity_add, condition, (world, NULL, &integer));
+  NULL_ALLOWED(lahar_prescribed_velocity_add, id, (world, &velocity, NULL));
+  NULL_REFUSED(lahar_prescribed_velocity_reaction, world, (NULL, 0, numbers));
+  NULL_REFUSED(lahar_prescribed_velocity_reaction, force, (world, 0, NULL));
+  NULL_REFUSED(lahar_prescribed_velocity_remove, world, (NULL, 0));
+  OK(lahar_traction_init(&traction, sizeof traction));
+  traction.body = 0;
+  for (d = 0; d < 2; ++d) traction.box_min[d] = 0, traction.box_max[d] = 1;
+  traction.box_min[0] = 0.95;
+  NULL_REFUSED(lahar_traction_init, traction, (NULL, sizeof traction));
+  NULL_REFUSED(lahar_traction_add, world, (NULL, &traction, &integer));
+  NULL_REFUSED(lahar_traction_add, traction, (world, NULL, &integer));
+  NULL_ALLOWED(lahar_traction_add, id, (world, &traction, NULL));
+  NULL_REFUSED(lahar_traction_force, world, (NULL, 0, &integer, &number, numbers));
+  NULL_ALLOWED(lahar_traction_force, particles, (world, 0, NULL, &number, numbers));
+  NULL_ALLOWED(lahar_traction_force, area, (world, 0, &integer, NULL, numbers));
+  NULL_REFUSED(lahar_traction_force, force, (world, 0, &integer, &number, NULL));
+  NULL_REFUSED(lahar_traction_remove, world, (NULL, 0));
+  NULL_REFUSED(lahar_world_equilibrium, world, (NULL, &equilibrium));
+  NULL_REFUSED(lahar_world_equilibrium, equilibrium, (world, NULL));
+  OK(lahar_settle_criteria_init(&criteria, sizeof criteria));
+  NULL_REFUSED(lahar_settle_criteria_init, criteria, (NULL, sizeof criteria));
+  criteria.max_steps = 1;
+  NULL_REFUSED(lahar_world_settle, world, (NULL, &criteria, &result));
+  NULL_ALLOWED(lahar_world_settle, result, (world, &criteria, NULL));
+  NULL_REFUSED(lahar_body_set_k0_stress, world, (NULL, 0, 1, 0, 0.5));
+  NULL_REFUSED(lahar_body_init_state, world, (NULL, 0));
+  OK(lahar_world_set_damping(world, 0.7));
+  NULL_ALLOWED(lahar_world_settle, criteria, (world, NULL, &result));
+  CHECK(result.converged == 1);
+}
+
 /* The path of the elastic plugin. */
 int main(int argc, char **argv) {
   if (argc < 2) return 2;
@@ -282,6 +332,7 @@ int main(int argc, char **argv) {
   body_functions();
   field_functions();
   wall_and_grid_functions();
+  condition_functions();
   /* Freed in the wrong order on purpose: children keep parents alive. */
   lahar_context_free(context);
   lahar_material_free(material);

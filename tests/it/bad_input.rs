@@ -1,4 +1,4 @@
-//! Bad input from C: `tests/c/null_arguments.c` and `tests/c/bad_input.c`.
+//! Bad input from C: `tests/c/null_arguments.c`, `tests/c/bad_input.c` and `tests/c/bad_conditions.c`.
 
 use super::compiler::{program, read, run};
 use super::header::{is_pointer, prototypes};
@@ -40,6 +40,12 @@ fn the_null_tests_go_through_every_pointer_of_the_header() {
 fn name_of(argument: &str) -> String {
     let name = argument.split(['*', ' ']).next_back().unwrap_or_default();
     name.split('[').next().unwrap_or_default().to_string()
+}
+
+#[test]
+fn bad_conditions_are_answered_before_the_first_step() {
+    let program = program(&repository("tests/c/bad_conditions.c"));
+    run(Command::new(program).arg(plugin_path("linear_elastic")));
 }
 
 #[test]

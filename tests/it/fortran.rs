@@ -103,6 +103,15 @@ fn fortran_twins_print_the_numbers_of_the_c_drivers() {
     }
 }
 
+#[test]
+fn the_readable_layer_has_every_condition_and_gives_the_numbers_of_c() {
+    let c = numbers(&compiler::program(&repository("tests/c/conditions.c")), &[]);
+    let twin = repository("tests/fortran/conditions.f90");
+    let fortran = numbers(&program(&twin, &["-ffpe-trap=invalid,zero,overflow"]), &[]);
+    assert_eq!(c.len(), 11);
+    assert_eq!(c, fortran);
+}
+
 /// Compiles a Fortran program with the module, by the documented line and stricter; the path of the program.
 fn program(source: &Path, more: &[&str]) -> PathBuf {
     let library = library_folder();

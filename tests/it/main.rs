@@ -7,6 +7,7 @@ mod support;
 
 mod bad_input;
 mod bar;
+mod conditions;
 mod determinism;
 mod discs;
 mod examples;

@@ -1,0 +1,77 @@
+/* A block of elastic ground with every condition: its twin tests/fortran/conditions.f90 prints the same numbers. The elastic
+ * plugin is found by LAHAR_PLUGIN_PATH. */
+#include "check.h"
+
+int main(void) {
+  const double min[3] = {0, 0, 0}, max[3] = {1, 1, 0}, down[3] = {0, -9.81, 0};
+  const double times[2] = {0, 0.05}, gravity[6] = {0, -9.81, 0, 1, -12, 0}, factors[2] = {0, 2};
+  const double velocities[6] = {0, 0, 0, 0.01, 0, 0};
+  lahar_context *context = NULL;
+  lahar_world *world;
+  lahar_material *material;
+  lahar_fill fill;
+  lahar_traction traction;
+  lahar_prescribed_velocity pull;
+  lahar_settle_criteria criteria;
+  lahar_settle_result settled = {0};
+  lahar_equilibrium start = {0}, end = {0};
+  int64_t body, load, pulled, carriers;
+  double force[3], reaction[3], area;
+  OK(lahar_context_create(1, &context));
+  OK(lahar_context_load_plugin(context, "lahar_linear_elastic", NULL));
+  material = make_elastic(context);
+  world = make_world(context);
+  OK(lahar_fill_init(&fill, sizeof fill));
+  fill.density = 2000;
+  OK(lahar_body_add_box(world, material, min, max, &fill, &body));
+  OK(lahar_world_set_damping(world, 0.5));
+  OK(lahar_world_set_gravity(world, down));
+  OK(lahar_body_set_k0_stress(world, body, 1.0, 0, 0.4));
+  OK(lahar_body_init_state(world, body));
+  start.struct_size = end.struct_size = sizeof start;
+  OK(lahar_world_equilibrium(world, &start));
+  OK(lahar_world_set_gravity_table(world, 2, times, gravity));
+  OK(lahar_traction_init(&traction, sizeof traction));
+  traction.body = body;
+  traction.axis = 1;
+  traction.box_min[0] = traction.box_min[2] = 0;
+  traction.box_max[0] = traction.box_max[1] = traction.box_max[2] = 1;
+  traction.box_min[1] = 0.95;
+  traction.traction[1] = -500;
+  traction.factors.count = 2;
+  traction.factors.times = times;
+  traction.factors.values = factors;
+  OK(lahar_traction_add(world, &traction, &load));
+  OK(lahar_prescribed_velocity_init(&pull, sizeof pull));
+  pull.components = LAHAR_COMPONENT_X;
+  pull.box_min[0] = pull.box_min[1] = pull.box_min[2] = -1;
+  pull.box_max[0] = 0.05;
+  pull.box_max[1] = pull.box_max[2] = 2;
+  pull.table.count = 2;
+  pull.table.times = times;
+  pull.table.values = velocities;
+  OK(lahar_prescribed_velocity_add(world, &pull, &pulled));
+  OK(lahar_settle_criteria_init(&criteria, sizeof criteria));
+  criteria.max_steps = 120;
+  settled.struct_size = sizeof settled;
+  OK(lahar_world_settle(world, &criteria, &settled));
+  OK(lahar_world_equilibrium(world, &end));
+  OK(lahar_traction_force(world, load, &carriers, &area, force));
+  OK(lahar_prescribed_velocity_reaction(world, pulled, reaction));
+  printf("start_unbalanced = %.17g\n", start.unbalanced_force);
+  printf("start_external = %.17g\n", start.external_force);
+  printf("converged = %d\nsteps = %d\n", (int)settled.converged, (int)settled.steps);
+  printf("time = %.17g\n", settled.time);
+  printf("kinetic_ratio = %.17g\n", end.kinetic_ratio);
+  printf("unbalanced_ratio = %.17g\n", end.unbalanced_ratio);
+  printf("carriers = %d\narea = %.17g\n", (int)carriers, area);
+  printf("force = %.17g\nreaction = %.17g\n", force[1], reaction[0]);
+  CHECK(settled.kinetic_ratio == end.kinetic_ratio && settled.unbalanced_ratio == end.unbalanced_ratio);
+  CHECK(force[1] < 0 && reaction[0] != 0 && settled.steps == 120);
+  OK(lahar_traction_remove(world, load));
+  OK(lahar_prescribed_velocity_remove(world, pulled));
+  lahar_world_free(world);
+  lahar_material_free(material);
+  lahar_context_free(context);
+  return failures != 0;
+}
