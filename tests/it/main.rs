@@ -6,9 +6,7 @@ mod setup;
 mod support;
 
 mod bad_input;
-mod bar;
 mod determinism;
-mod discs;
 mod examples;
 mod fortran;
 mod header;
