@@ -6,10 +6,8 @@ mod setup;
 mod support;
 
 mod bad_input;
-mod bar;
 mod conditions;
 mod determinism;
-mod discs;
 mod examples;
 mod fortran;
 mod header;

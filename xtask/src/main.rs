@@ -12,6 +12,7 @@ mod instructions;
 mod picture;
 mod process;
 mod setup;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -47,6 +48,8 @@ enum Task {
     },
     /// Measures nanoseconds per particle and step
     Bench(bench::Arguments),
+    /// Runs the verification cases and writes docs/verification.md
+    Verify(verify::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Task::Headers { check } => checks::headers(check),
         Task::Instructions { write } => instructions::run(write),
         Task::Bench(arguments) => bench::run(&arguments),
+        Task::Verify(arguments) => verify::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -15,7 +15,8 @@ pub struct Frame {
     pub speed: Vec<f64>,
 }
 
-const FONT: &str = "sans-serif";
+/// The font of all pictures, once it is registered.
+pub const FONT: &str = "sans-serif";
 const PANEL_WIDTH: u32 = 760; // pixels, axis labels and margins included
 const LEFT: u32 = 56;
 const BOTTOM: u32 = 44;
@@ -107,9 +108,14 @@ fn triples(buffer: IOBuffer) -> Result<Vec<[f64; 3]>, String> {
 
 /// Draws the frames as panels with equal scales of both axes, and a colour bar.
 pub fn draw(frames: &[Frame], file: &Path) -> Result<(), String> {
-    plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-        .map_err(|_| "the font cannot be read".to_string())?;
+    register_font()?;
     draw_panels(frames, file).map_err(|e| format!("{}: {e}", file.display()))
+}
+
+/// Brings the font along, so that none of the system is needed.
+pub fn register_font() -> Result<(), String> {
+    plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+        .map_err(|_| "the font cannot be read".to_string())
 }
 
 fn draw_panels(frames: &[Frame], file: &Path) -> Result<(), Box<dyn std::error::Error>> {

@@ -26,6 +26,11 @@ impl Machine {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
         }
     }
+
+    /// Date, processor and cores, without the commit.
+    pub fn class(&self) -> String {
+        format!("{}, {}, {} cores", self.date, self.processor, self.cores)
+    }
 }
 
 impl fmt::Display for Machine {

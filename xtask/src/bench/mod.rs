@@ -17,6 +17,8 @@ mod stick;
 mod targets;
 mod worker;
 
+pub use machine::Machine;
+
 use crate::process;
 use bandwidth::Bandwidth;
 use rounds::{Case, Row};

@@ -1,0 +1,40 @@
+//! The drivers: one file for each family of cases. A driver is a function from a set-up to an [`Outcome`].
+
+mod bar;
+mod discs;
+
+use lahar::error::Error;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::case::{nearest, parse_setup};
+use crate::run::Outcome;
+
+/// A run that only has to be started. An error of the engine is a result.
+pub type Prepared = Box<dyn FnOnce() -> Result<Outcome, Error>>;
+
+/// How a set-up becomes a run.
+type Prepare = fn(&Value) -> Result<Prepared, String>;
+
+/// Every family under its name in the files of the cases.
+const FAMILIES: &[(&str, Prepare)] =
+    &[("bar", |setup| with(setup, bar::run)), ("discs", |setup| with(setup, discs::run))];
+
+/// A run of a family with a set-up; an error tells the nearest family, or where the set-up is wrong.
+pub fn prepare(family: &str, setup: &Value) -> Result<Prepared, String> {
+    match FAMILIES.iter().find(|(name, _)| *name == family) {
+        Some((_, prepare)) => prepare(setup),
+        None => {
+            let nearest = nearest(family, FAMILIES.iter().map(|(name, _)| *name));
+            Err(format!("there is no family \"{family}\"; did you mean \"{nearest}\"?"))
+        }
+    }
+}
+
+fn with<S: DeserializeOwned + 'static>(
+    setup: &Value,
+    run: fn(&S) -> Result<Outcome, Error>,
+) -> Result<Prepared, String> {
+    let setup: S = parse_setup(setup)?;
+    Ok(Box::new(move || run(&setup)))
+}
