@@ -14,7 +14,7 @@ use lahar::world::host_arrays::{ParticleArrays, Strided};
 use lahar::world::options::Options;
 use lahar::world::statics::Criteria;
 
-use crate::setup::{a_box, context, context_with, elastic, fill, read, world};
+use crate::setup::{a_box, context, context_with, elastic, fill, read, world, write};
 
 const EVERYWHERE: BoxRegion = BoxRegion { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
 
@@ -361,6 +361,43 @@ fn a_column_with_its_k0_stress_stays_as_it_is() {
         let (start, _, moved, _) = run(0.5, 11.0);
         assert!(start.unbalanced_ratio > 0.04 && moved > 0.1 * 0.0728743, "{start:?} {moved}");
     }
+}
+
+/// A fluid keeps its pressure in the volume ratio, so that a stress alone would be forgotten in the next step.
+#[test]
+fn an_initial_stress_reaches_the_state_of_the_model() {
+    let context = context(1);
+    let values = [("bulk_modulus", 1e6), ("viscosity", 0.0)];
+    let water = Material::new(&context, "newtonian", &values).expect("a material");
+    let pressure_after = |set: &dyn Fn(&mut World, i64)| {
+        let mut world = world(&context, &options(ShapeKind::QuadraticBspline, 0.05));
+        world.set_gravity([0.0, -9.81, 0.0]).expect("finite");
+        let region = a_box([0.0; 3], [0.2, 1.0, 0.0]);
+        let body = fill(&mut world, &water, &region, 1000.0, [0.0; 3]);
+        set(&mut world, body);
+        let before = read(&world, body, "stress");
+        world.step(Some(1e-6)).expect("a short step");
+        let after = read(&world, body, "stress");
+        let most = before.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+        assert!((most - 9810.0 * 0.9875).abs() < 1.0, "pressure {most} at the base");
+        before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / most
+    };
+    let k0 = |w: &mut World, body| w.set_k0_stress(body, 1.0, None, 1.0).expect("level ground");
+    let field = |w: &mut World, body| {
+        let x = read(w, body, "position");
+        let p = |x: &[f64]| -9810.0 * (1.0 - x[1]);
+        let stress: Vec<f64> =
+            x.chunks(2).flat_map(|x| [p(x), p(x), p(x), 0.0, 0.0, 0.0]).collect();
+        write(w, body, "stress", &stress);
+    };
+    let field_and_state = |w: &mut World, body| {
+        field(w, body);
+        w.init_body_state(body).expect("a good stress");
+    };
+    assert!(pressure_after(&k0) < 1e-4);
+    assert!(pressure_after(&field_and_state) < 1e-4);
+    // negative control: the stress alone is forgotten
+    assert!(pressure_after(&field) > 0.9);
 }
 
 fn all_conditions(threads: usize, order: StepOrder) -> (Vec<u64>, usize) {
