@@ -272,6 +272,40 @@ fn a_traction_gives_exactly_its_force_while_the_body_moves() {
     }
 }
 
+/// A solid cylinder, R = 1 m, under a radial traction of 1 Pa: σ_r = σ_θ = 1 Pa everywhere (Lamé without a hole).
+#[test]
+fn a_traction_on_a_cylinder_is_one_per_radian() {
+    let context = context(1);
+    let h = 0.1;
+    let axial = Options { damping: 0.3, axisymmetric: true, ..options(ShapeKind::Linear, h) };
+    let mut world = world(&context, &axial);
+    let material = elastic(&context, 1e6, 0.3);
+    slip(&mut world, &[(0, 1, 0.0), (1, 1, 0.0), (1, -1, h)]);
+    let body = fill(&mut world, &material, &a_box([0.0; 3], [1.0, h, 0.0]), 1000.0, [0.0; 3]);
+    let load = Traction {
+        body,
+        region: BoxRegion { min: [0.95, 0.0, 0.0], max: [1.0, h, 0.0] },
+        axis: 0,
+        side: 1,
+        traction: table(&[0.0, 0.5], &[[0.0; 3], [1.0, 0.0, 0.0]]),
+    };
+    let id = world.add_traction(load).expect("a surface");
+    let (settled, result) = world.settle(&Criteria::default());
+    result.expect("a settlement");
+    assert!(settled.converged, "{settled:?}");
+    let (_, area, force) = world.traction_force(id).expect("a load");
+    assert!((area - h).abs() < 1e-14 && (force[0] - h).abs() < 1e-14, "{area} {force:?}");
+    let (x, stress) = (read(&world, body, "position"), read(&world, body, "stress"));
+    let mut worst = 0.0f64;
+    for (x, s) in x.chunks(2).zip(stress.chunks(6)) {
+        if x[0] > 2.0 * h {
+            worst = worst.max((s[0] - 1.0).abs()).max((s[2] - 1.0).abs());
+        }
+    }
+    println!("cylinder: worst particle {worst:.2e} beyond two cells of the axis");
+    assert!(worst <= 0.02, "{worst}");
+}
+
 /// A column of H = 10 m, E = 10 MPa, ν = 0.3, ρ = 2000 kg/m³ between smooth walls, and its cells.
 fn column(context: &Arc<Context>, shape: ShapeKind, cells: usize) -> (World, i64) {
     let h = 10.0 / cells as f64;
