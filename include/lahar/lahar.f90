@@ -61,10 +61,21 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_LOG_DETAIL = 3_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_SHAPE_LINEAR = 0_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_SHAPE_QUADRATIC_BSPLINE = 1_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_SHAPE_CUBIC_BSPLINE = 2_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_SHAPE_UNIFORM_GIMP = 3_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_SHAPE_CONTIGUOUS_GIMP = 4_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_WALLS_PLAIN = 0_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_WALLS_MODIFIED = 1_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_PIC_FLIP = 0_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_APIC = 1_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_TPIC = 2_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_MLS = 3_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_XPIC = 4_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_TRANSFER_FMPM = 5_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ORDER_USL = 0_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ORDER_MUSL = 1_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ORDER_USF = 2_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ORDER_USAVG = 3_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_GRID_DYNAMIC = 0_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_GRID_GROW_ONLY = 1_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_GRID_STATIC = 2_c_int32_t
@@ -158,6 +169,10 @@ module lahar
     real(c_double) :: damping = 0.0_c_double
     real(c_double) :: box_min(3) = 0.0_c_double
     real(c_double) :: box_max(3) = 0.0_c_double
+    integer(c_int32_t) :: wall_treatment = 0
+    integer(c_int32_t) :: axisymmetric = 0
+    integer(c_int32_t) :: filter_order = 0
+    integer(c_int32_t) :: body_force = 0
   end type lahar_world_options
 
   type, bind(c), public :: lahar_array

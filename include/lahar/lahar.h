@@ -542,21 +542,57 @@ lahar_status lahar_material_value(const lahar_material *material,
 // Shape functions: quadratic B-splines (default).
 #define LAHAR_SHAPE_QUADRATIC_BSPLINE 1
 
+// Shape functions: cubic B-splines.
+#define LAHAR_SHAPE_CUBIC_BSPLINE 2
+
+// Shape functions: uniform GIMP, linear functions averaged over the particle's domain, which keeps its size. Bodies from arrays must
+// give the sizes of their particles.
+#define LAHAR_SHAPE_UNIFORM_GIMP 3
+
+// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of the particle (F = R U), at most to the
+// spacing.
+#define LAHAR_SHAPE_CONTIGUOUS_GIMP 4
+
+// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it (default).
+#define LAHAR_WALLS_PLAIN 0
+
+// Next to walls shape functions are modified: linear fields are reproduced up to the wall, where the node on it alone counts. Walls must
+// stand on node planes, at most one on each side of an axis, and particles between them.
+#define LAHAR_WALLS_MODIFIED 1
+
 // Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
 #define LAHAR_TRANSFER_PIC_FLIP 0
 
 // Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
 #define LAHAR_TRANSFER_APIC 1
 
+// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient; any shape function.
+#define LAHAR_TRANSFER_TPIC 2
+
+// Transfer between particles and grid: APIC with the forces and gradients of moving least squares (MLS-MPM); B-splines.
+#define LAHAR_TRANSFER_MLS 3
+
+// Transfer between particles and grid: extended (XPIC) of order `filter_order`.
+#define LAHAR_TRANSFER_XPIC 4
+
+// Transfer between particles and grid: full-mass-matrix (FMPM) of order `filter_order`.
+#define LAHAR_TRANSFER_FMPM 5
+
 // Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
 // from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
 // touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
-// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; quadratic shapes have no such trouble.
+// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such trouble.
 #define LAHAR_ORDER_USL 0
 
 // Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
 // second time, with the same weights, and velocity gradients and stresses come from those.
 #define LAHAR_ORDER_MUSL 1
+
+// Order of a step: update stress first, from the velocities at the start of the step.
+#define LAHAR_ORDER_USF 2
+
+// Order of a step: half of the stress update first, half last; keeps energy best, for twice the calls of the material.
+#define LAHAR_ORDER_USAVG 3
 
 // Grid: blocks come and go with the particles (default).
 #define LAHAR_GRID_DYNAMIC 0
@@ -574,7 +610,7 @@ typedef struct lahar_world lahar_world;
 typedef struct lahar_world_options {
     // sizeof(lahar_world_options); set by lahar_world_options_init.
     uint32_t struct_size;
-    // 2 (plane strain) or 3; default 3.
+    // 2 (plane strain, or see `axisymmetric`) or 3; default 3.
     int32_t dimension;
     // One of LAHAR_SHAPE_*.
     int32_t shape;
@@ -601,6 +637,15 @@ typedef struct lahar_world_options {
     double box_min[3];
     // Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     double box_max[3];
+    // One of LAHAR_WALLS_*.
+    int32_t wall_treatment;
+    // 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
+    int32_t axisymmetric;
+    // Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
+    // 0: the default, 2.
+    int32_t filter_order;
+    // 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
+    int32_t body_force;
 } lahar_world_options;
 
 // Fills the options with their defaults.
@@ -615,7 +660,7 @@ lahar_status lahar_world_options_init(lahar_world_options *options, int64_t size
 // `options`: copied.
 // `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
-// static grid).
+// static grid), LAHAR_ERROR_UNSUPPORTED (options that do not go together; the text names the nearest that do).
 // Thread: any
 lahar_status lahar_world_create(lahar_context *context,
                                 const lahar_world_options *options,
@@ -1185,7 +1230,7 @@ lahar_status lahar_prescribed_velocity_reaction(const lahar_world *world, int64_
 // with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
 // particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
 // centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
-// wide. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+// wide, or with axial symmetry a radian. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
 typedef struct lahar_traction {
     // sizeof(lahar_traction); set by lahar_traction_init.
     uint32_t struct_size;
@@ -1605,7 +1650,7 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, name) == 16);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, unit) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, description) == 32);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, initial) == 40);
-LAHAR_ASSERT_LAYOUT(sizeof(lahar_world_options) == 152);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_world_options) == 168);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, dimension) == 4);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, shape) == 8);
@@ -1620,6 +1665,10 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, gravity) == 72);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, damping) == 96);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, box_min) == 104);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, box_max) == 128);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, wall_treatment) == 152);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, axisymmetric) == 156);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, filter_order) == 160);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, body_force) == 164);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_array) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, data) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, component_stride) == 8);
