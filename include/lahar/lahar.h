@@ -670,7 +670,7 @@ lahar_status lahar_world_create(lahar_context *context,
 // Thread: owner
 void lahar_world_free(lahar_world *world);
 
-// Sets gravity from the next step on.
+// Sets constant gravity from the next step on, in the place of a table (lahar_world_set_gravity_table) too.
 //
 // `gravity`: [m/s^2], shape [3], finite.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
@@ -728,7 +728,8 @@ lahar_status lahar_world_advance(lahar_world *world,
 //
 // It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
 // above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
-// dimension, nu the kinematic viscosity.
+// dimension, nu the kinematic viscosity. Gravity by a table counts with its largest value in the step, and a prescribed
+// velocity V with |V| dt <= cfl h.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_stable_dt(const lahar_world *world,
@@ -1229,7 +1230,7 @@ lahar_status lahar_prescribed_velocity_reaction(const lahar_world *world, int64_
 // with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
 // particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
 // centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
-// wide. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+// wide, or with axial symmetry a radian. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
 typedef struct lahar_traction {
     // sizeof(lahar_traction); set by lahar_traction_init.
     uint32_t struct_size;

@@ -39,8 +39,8 @@ impl Traction {
         Ok(())
     }
 
-    /// The particles of the body that carry the load, in the order of their ids.
-    pub fn surface<const D: usize>(&self, body: &Body) -> Result<Surface> {
+    /// The particles of the body that carry the load, in the order of their ids; areas are per radian if the world is `axisymmetric`.
+    pub fn surface<const D: usize>(&self, body: &Body, axisymmetric: bool) -> Result<Surface> {
         let particles = &body.particles;
         let mut chosen = Vec::new();
         for k in 0..particles.len() {
@@ -66,14 +66,19 @@ impl Traction {
         }
         self.one_layer(body.id, &mut chosen)?;
         chosen.sort_unstable_by_key(|c| c.id);
-        let area = |c: &Chosen<D>| c.size.iter().product::<f64>() / c.size[self.axis];
+        let edge = |c: &Chosen<D>| c.size.iter().product::<f64>() / c.size[self.axis];
+        let outwards = if self.axis == 0 { 0.5 * f64::from(self.side) } else { 0.0 };
+        let radius = |c: &Chosen<D>| {
+            if axisymmetric { c.x[0] + outwards * c.size[0] } else { 1.0 }
+        };
         let mut wanted = vec![NONE; particles.len()];
         for (n, c) in chosen.iter().enumerate() {
             wanted[c.id as usize] = n as u32;
         }
         Ok(Surface {
             ids: chosen.iter().map(|c| c.id).collect(),
-            areas: chosen.iter().map(area).collect(),
+            areas: chosen.iter().map(|c| edge(c) * radius(c)).collect(),
+            edges: chosen.iter().map(edge).collect(),
             places: chosen.iter().map(|c| c.place).collect(),
             wanted,
         })
@@ -123,8 +128,10 @@ const NONE: u32 = u32::MAX;
 pub struct Surface {
     /// Ids, ascending.
     pub ids: Vec<i64>,
-    /// Area of each [m²].
+    /// Area of the face of each [m²].
     pub areas: Vec<f64>,
+    /// Product of its edges in the surface, 1 m thick in two dimensions [m²].
+    pub edges: Vec<f64>,
     /// Places in storage, in the order of the ids.
     pub places: Vec<usize>,
     /// For each id of the body its number in the surface.

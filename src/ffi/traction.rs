@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 /// with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
 /// particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
 /// centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
-/// wide. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+/// wide, or with axial symmetry a radian. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_traction {

@@ -258,7 +258,7 @@ pub unsafe extern "C" fn lahar_world_free(world: *mut lahar_world) {
     });
 }
 
-/// Sets gravity from the next step on.
+/// Sets constant gravity from the next step on, in the place of a table (lahar_world_set_gravity_table) too.
 ///
 /// `gravity`: [m/s^2], shape [3], finite.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
@@ -381,7 +381,8 @@ fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
 ///
 /// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
 /// above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
-/// dimension, nu the kinematic viscosity.
+/// dimension, nu the kinematic viscosity. Gravity by a table counts with its largest value in the step, and a prescribed
+/// velocity V with |V| dt <= cfl h.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]

@@ -14,7 +14,7 @@ use crate::world::state::State;
 /// Adds the forces of the tractions at the middle of the step to those of the stresses.
 pub fn apply_tractions<const D: usize>(world: &mut State<D>, dt: f64) {
     let (space, middle) = (world.space(), world.time + 0.5 * dt);
-    let State { bodies, grid, kernels, conditions, .. } = world;
+    let State { bodies, grid, kernels, conditions, options, .. } = world;
     let mut forces = std::mem::take(&mut grid.force);
     for TractionEntry { load, surface, force: total, .. } in &mut conditions.tractions {
         *total = [0.0; 3];
@@ -24,11 +24,13 @@ pub fn apply_tractions<const D: usize>(world: &mut State<D>, dt: f64) {
         let (particles, layout) = (&body.particles, body.particles.layout);
         let traction = load.traction.at(middle);
         surface.look_up(&particles.id);
-        for (place, area) in surface.places.iter().zip(&surface.areas) {
+        let faces = surface.areas.iter().zip(&surface.edges);
+        for (place, (area, edge)) in surface.places.iter().zip(faces) {
             let center = particles.get::<D>(layout.position, *place);
             let [volume] = particles.get::<1>(layout.volume, *place);
             let mut face = center;
-            face[load.axis] += 0.5 * f64::from(load.side) * volume / area; // [CND-4]
+            let section = if options.axisymmetric { edge * center[0] } else { *edge };
+            face[load.axis] += 0.5 * f64::from(load.side) * volume / section; // [CND-4]
             let force = traction.map(|t| t * area);
             // a face that has left the nodes of the body behind: its particle's own nodes have mass
             let near_face = spread(kernels, grid, space.at(face, [0.0; D]), force, &mut forces);

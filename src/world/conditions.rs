@@ -169,7 +169,7 @@ impl World {
 
 impl<const D: usize> State<D> {
     fn surface_of(&self, load: &Traction) -> Result<Surface> {
-        load.surface::<D>(self.body(load.body)?)
+        load.surface::<D>(self.body(load.body)?, self.options.axisymmetric)
     }
 
     fn prescribed_position(&self, id: i64) -> Result<usize> {
