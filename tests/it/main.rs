@@ -18,6 +18,5 @@ mod plugins;
 mod readme;
 mod register;
 mod sparse_grid;
-mod tank;
 mod tidy;
 mod vtp;
