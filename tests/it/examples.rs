@@ -1,7 +1,8 @@
 //! The drivers in `examples-c` compile by the line that they document, reach their gates and are clean under valgrind.
 //!
 //! Gates: columns of sand against Lube et al. 2005 and Lajeunesse et al. 2005 (P7), the dam break against Martin and Moyce 1952
-//! (F4), closed forms for the others. A gate is what the method attains in this set-up, not what a run happens to give.
+//! (F4), closed forms for the others; more columns are runs of the case P7 in `tests/cases`. A gate is what the method attains in
+//! this set-up, not what a run happens to give.
 
 use super::compiler::{WARNINGS, library_folder, run};
 use super::support::{repository, scratch_folder, target_folder};
@@ -134,23 +135,16 @@ fn assert_flip_collapse(r: &Results, number: usize) {
 
 #[test]
 fn columns_of_sand_run_as_far_as_in_the_experiments() {
-    let r = results(&c_program("02_column_collapse"), &["a=0.5", "a=1", "a=2"]);
-    for number in 1..=3 {
+    let r = results(&c_program("02_column_collapse"), &["a=0.5", "a=1"]);
+    for number in 1..=2 {
         assert_flip_collapse(&r, number);
     }
 }
 
 #[test]
-fn a_slender_column_of_sand_runs_as_far_as_in_the_experiments() {
-    assert_flip_collapse(&results(&c_program("02_column_collapse"), &["a=4"]), 1);
-}
-
-#[test]
-fn columns_of_sand_run_a_little_farther_with_apic() {
-    let r = results(&c_program("02_column_collapse"), &["a=0.5", "a=1", "a=2", "transfer=apic"]);
-    for number in 1..=3 {
-        assert_collapse(&r, number, 0.25);
-    }
+fn a_column_of_sand_runs_a_little_farther_with_apic() {
+    let r = results(&c_program("02_column_collapse"), &["a=0.5", "transfer=apic"]);
+    assert_collapse(&r, 1, 0.25);
 }
 
 #[test]

@@ -20,6 +20,5 @@ mod plugins;
 mod readme;
 mod register;
 mod sparse_grid;
-mod tank;
 mod tidy;
 mod vtp;

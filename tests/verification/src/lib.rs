@@ -3,7 +3,8 @@
 //! A case is data: `tests/cases/<case>.json` holds its source, its runs, and the checks with their references and gates. What a
 //! run does is the driver of its family, a function from the set-up to named quantities and curves ([`family`]).
 //!
-//! * [`case`] reads the files. * [`run`] runs them side by side. * [`judge`] compares. * [`world`] holds what drivers share.
+//! * [`case`] reads the files, [`run`] runs them side by side, [`judge`] compares with references and gates.
+//! * [`family`] holds the drivers, [`world`] what they share.
 //!
 //! `cargo xtask verify` writes the report; the test `cases` runs each case in its small sizes.
 
@@ -12,6 +13,3 @@ pub mod family;
 pub mod judge;
 pub mod run;
 pub mod world;
-
-/// What a driver gives: measured quantities and curves.
-pub use run::Outcome;

@@ -2,7 +2,7 @@
 
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
-use lahar::error::Result;
+use lahar::error::{Error, Result, Status};
 use lahar::material::Material;
 use lahar::particles::seeding::{Fill, Region};
 use lahar::shape::{ShapeKind, WallTreatment};
@@ -203,6 +203,19 @@ pub fn fill(
     particles_per_cell: i32,
 ) -> Result<i64> {
     world.add_shape(material, region, &Fill { density, particles_per_cell, ..Fill::default() })
+}
+
+/// Steps that no run needs: a world that comes to them has become too fast or too stiff for its grid.
+const MOST_STEPS: i64 = 1_000_000;
+
+/// Steps until a time; too many steps are an error, since a run that has blown up takes ever smaller ones.
+pub fn advance(world: &mut World, until: f64) -> Result<()> {
+    world.advance(until, MOST_STEPS - world.step_count()).1?;
+    if world.time() < until {
+        let text = format!("{MOST_STEPS} steps have not reached {until} s but {} s", world.time());
+        return Err(Error::new(Status::StepTooLarge, text));
+    }
+    Ok(())
 }
 
 /// An axis-aligned box of the plane.

@@ -43,7 +43,7 @@ fn errors_in_files_tell_where_they_stand() {
 
 #[test]
 fn an_unknown_case_is_answered_with_the_nearest() {
-    let error = load(&["D22".to_string()]).err().expect("an error");
+    let error = load(&["D22".to_string()]).expect_err("an error");
     assert!(error.contains("D22") && error.contains("did you mean D2?"), "{error}");
 }
 

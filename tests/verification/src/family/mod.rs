@@ -1,7 +1,14 @@
 //! The drivers: one file for each family of cases. A driver is a function from a set-up to an [`Outcome`].
 
 mod bar;
+mod column;
+mod dam;
 mod discs;
+mod element;
+mod slosh;
+mod spin;
+mod tank;
+mod vortex;
 
 use lahar::error::Error;
 use serde::de::DeserializeOwned;
@@ -17,8 +24,17 @@ pub type Prepared = Box<dyn FnOnce() -> Result<Outcome, Error>>;
 type Prepare = fn(&Value) -> Result<Prepared, String>;
 
 /// Every family under its name in the files of the cases.
-const FAMILIES: &[(&str, Prepare)] =
-    &[("bar", |setup| with(setup, bar::run)), ("discs", |setup| with(setup, discs::run))];
+const FAMILIES: &[(&str, Prepare)] = &[
+    ("bar", |setup| with(setup, bar::run)),
+    ("column", |setup| with(setup, column::run)),
+    ("dam", |setup| with(setup, dam::run)),
+    ("discs", |setup| with(setup, discs::run)),
+    ("element", |setup| with(setup, element::run)),
+    ("slosh", |setup| with(setup, slosh::run)),
+    ("spin", |setup| with(setup, spin::run)),
+    ("tank", |setup| with(setup, tank::run)),
+    ("vortex", |setup| with(setup, vortex::run)),
+];
 
 /// A run of a family with a set-up; an error tells the nearest family, or where the set-up is wrong.
 pub fn prepare(family: &str, setup: &Value) -> Result<Prepared, String> {
