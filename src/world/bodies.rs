@@ -89,10 +89,14 @@ impl<const D: usize> State<D> {
         let (points, size) =
             fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
         let n = points.len();
-        let radius = |x: &[f64; D]| if self.options.axisymmetric { x[0] } else { 1.0 };
         let area: f64 = size.iter().product();
-        let volumes: Vec<f64> = points.iter().map(|x| radius(x) * area).collect();
-        let density = if given.0 { how.density } else { how.mass / volumes.iter().sum::<f64>() };
+        let (mut of_each, mut whole) = (Vec::new(), area * n as f64);
+        if self.options.axisymmetric {
+            reserve(&mut of_each, n, "the volumes of particles")?;
+            of_each.extend(points.iter().map(|x| x[0] * area)); // per radian
+            whole = of_each.iter().sum();
+        }
+        let density = if given.0 { how.density } else { how.mass / whole };
         if !(density > 0.0 && density.is_finite()) {
             return Err(Error::invalid(format!(
                 "density [kg/m^3] or mass [kg] must be positive and finite, got {density} kg/m^3"
@@ -103,7 +107,10 @@ impl<const D: usize> State<D> {
             material,
             &ParticleArrays {
                 position: Strided::interleaved(points.as_flattened(), D)?,
-                volume: Strided::interleaved(&volumes, 1)?,
+                volume: match of_each.is_empty() {
+                    true => Strided::constant(&[area], n),
+                    false => Strided::interleaved(&of_each, 1)?,
+                },
                 size: Some(Strided::constant(&size, n)),
                 mass: None,
                 density,
