@@ -735,6 +735,16 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_body_remove
 
+    function lahar_body_set_f_bar(world, body, on) &
+        bind(c, name="lahar_body_set_f_bar") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: body
+      integer(c_int32_t), value :: on
+      integer(c_int32_t) :: answer
+    end function lahar_body_set_f_bar
+
     function lahar_world_body_count(world, bodies) &
         bind(c, name="lahar_world_body_count") result(answer)
       import :: c_int32_t, c_int64_t, c_ptr
@@ -1189,6 +1199,7 @@ module lahar
   public :: lahar_body_add_sphere
   public :: lahar_body_add_polygon
   public :: lahar_body_remove
+  public :: lahar_body_set_f_bar
   public :: lahar_world_body_count
   public :: lahar_world_bodies
   public :: lahar_body_particle_count
