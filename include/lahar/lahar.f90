@@ -1291,6 +1291,7 @@ module lahar
     procedure :: add_sphere => world_add_sphere
     procedure :: add_polygon => world_add_polygon
     procedure :: remove_body => world_remove_body
+    procedure :: set_f_bar => world_set_f_bar
     procedure :: body_count => world_body_count
     procedure :: particle_count => world_particle_count
     procedure :: components => world_components
@@ -1709,6 +1710,16 @@ contains
     if (present(body)) body = id(1)
     call finish(status, stat, errmsg)
   end subroutine world_add_polygon
+
+  !> Switches F-bar on or off for a body; off at first.
+  subroutine world_set_f_bar(self, body, on, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: body
+    logical, intent(in) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_body_set_f_bar(self%handle, body, merge(1_c_int32_t, 0_c_int32_t, on)), stat, errmsg)
+  end subroutine world_set_f_bar
 
   !> Removes a body.
   subroutine world_remove_body(self, body, stat, errmsg)
