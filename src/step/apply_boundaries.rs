@@ -35,12 +35,13 @@ fn apply_walls<const D: usize>(world: &mut State<D>, dt: f64) {
             for_reached_nodes(&entry.wall, space, key, |n| {
                 let mass = r0[n][0];
                 let change = constrain::<D>(&entry.wall, &mut r0[n]);
-                for a in 0..D {
-                    let held = change[a] != 0.0 && r0[n][a + 1] == 0.0;
-                    if damped && held {
+                if damped {
+                    for a in (0..D).filter(|a| change[*a] != 0.0 && r0[n][a + 1] == 0.0) {
                         let whole = dt * (force[n][a + 1] + mass * gravity[a]);
                         impulse[a] -= whole - mass * r1[n][a + 1];
                     }
+                }
+                for a in 0..D {
                     r1[n][a + 1] += change[a];
                     impulse[a] += mass * change[a];
                 }

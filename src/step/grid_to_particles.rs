@@ -246,9 +246,8 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             if S::SIZED {
                 size = each!(d in D => V::load(&motion.other(job.size + d)[k..end]));
             }
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.at(x, size));
-            let mls = if job.transfer == TransferKind::Mls { S::MOMENT } else { None };
-            self.weights[g].set(&stencil, job.transfer.is_affine(), mls.map(f64::recip));
+            let stencil = Stencil::<V, N, D>::new::<S>(job.space.at::<V, S, N>(x, size));
+            self.weights[g].set(&stencil, job.transfer.is_affine());
             self.corners[g] = corners(&stencil, key);
         }
     }
@@ -353,7 +352,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     for a in 0..D {
         x[a].store(&mut motion.position[a][k..end]);
     }
-    outside(job, key, x, end - k)
+    outside::<V, S, N, D>(job, key, x, end - k)
 }
 
 /// Affine matrices of eight particles at `x`.
@@ -368,7 +367,7 @@ fn affine<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     }
     let mut modified = None;
     if S::MODIFIED {
-        let (xi, walls) = (job.space.to_units(x), &job.space.walls);
+        let (xi, walls) = (job.space.between_walls(x), &job.space.walls);
         modified = Some(each!(d in D => is_modified::<V, S, N>(xi[d], walls[d].map(V::splat))));
     }
     apic::affine(received, S::MOMENT, job.space.spacing, modified)
@@ -376,13 +375,13 @@ fn affine<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.
 #[inline(always)]
-fn outside<V: Vector, const D: usize>(
+fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     key: Key<D>,
     x: [V; D],
     count: usize,
 ) -> u8 {
-    let xi = job.space.to_units(x);
+    let xi = if S::MODIFIED { job.space.between_walls(x) } else { job.space.to_units(x) };
     let mut inside = u8::MAX;
     for d in 0..D {
         let place = xi[d] - V::splat(job.space.first_offset);
