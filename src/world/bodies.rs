@@ -90,6 +90,7 @@ impl<const D: usize> State<D> {
             fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
         let n = points.len();
         let area: f64 = size.iter().product();
+        let uniform = [area];
         let (mut of_each, mut whole) = (Vec::new(), area * n as f64);
         if self.options.axisymmetric {
             reserve(&mut of_each, n, "the volumes of particles")?;
@@ -108,7 +109,7 @@ impl<const D: usize> State<D> {
             &ParticleArrays {
                 position: Strided::interleaved(points.as_flattened(), D)?,
                 volume: match of_each.is_empty() {
-                    true => Strided::constant(&[area], n),
+                    true => Strided::constant(&uniform, n),
                     false => Strided::interleaved(&of_each, 1)?,
                 },
                 size: Some(Strided::constant(&size, n)),
