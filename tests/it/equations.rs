@@ -114,8 +114,8 @@ fn equations() -> BTreeMap<String, Equation> {
                 if let Some(id) = &current {
                     let place = format!("{path}:{}", n + 1);
                     assert!(line.starts_with(&format!("### [{id}] ")), "{place}: ### [{id}] Title");
-                    let (place, symbols) = (place.clone(), symbols.to_string());
-                    let new = Equation { place, symbols, text: String::new() };
+                    let (text, symbols) = (String::new(), symbols.to_string());
+                    let new = Equation { place: place.clone(), text, symbols };
                     if let Some(old) = equations.insert(id.clone(), new) {
                         panic!("[{id}] is defined twice: {} and {place}", old.place);
                     }
