@@ -76,10 +76,10 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
     locate(world)?;
     world.hook(HookPoint::Start, dt);
     let outcome = match world.options.order {
-        StepOrder::Usl => usl(world, dt),
-        StepOrder::Musl => musl(world, dt),
-        StepOrder::Usf => usf(world, dt),
-        StepOrder::Usavg => usavg(world, dt),
+        StepOrder::Usl => usl(world, dt),     // [ORD-1]
+        StepOrder::Musl => musl(world, dt),   // [ORD-2]
+        StepOrder::Usf => usf(world, dt),     // [ORD-3]
+        StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
     outcome.limits()
@@ -101,7 +101,7 @@ fn move_grid<const D: usize>(world: &mut State<D>, dt: f64) {
 fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
     world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Everything, dt); // [ORD-1]
+        grid_to_particles(piece, Gather::Everything, dt);
         update_strain(piece, dt);
         update_stress(piece, dt)
     })
@@ -116,7 +116,7 @@ fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
         grid_to_particles(piece, Gather::Velocity, dt);
         Outcome::default()
     });
-    velocities_to_grid(world, Scattered::Momentum); // [ORD-2]
+    velocities_to_grid(world, Scattered::Momentum);
     apply_boundaries_again(world);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::PositionAndGradient, dt);
@@ -127,7 +127,7 @@ fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
 
 /// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180 (2002) 383–403, doi:10.1006/jcph.2002.7103.
 fn usf<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
-    let outcome = stress_of_start(world, dt); // [ORD-3]
+    let outcome = stress_of_start(world, dt);
     move_grid(world, dt);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Motion, dt);
@@ -138,7 +138,7 @@ fn usf<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
 
 /// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn, CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
 fn usavg<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
-    let outcome = stress_of_start(world, 0.5 * dt); // [ORD-4]
+    let outcome = stress_of_start(world, 0.5 * dt);
     move_grid(world, dt);
     outcome.merge(world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Everything, dt);
