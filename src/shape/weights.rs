@@ -81,7 +81,7 @@ impl<V: Vector, const N: usize, const D: usize> Axes<V, N, D> {
         let mut nodes = [value; N];
         for n in 0..N {
             if rest(N) != Some(n) {
-                nodes[n] = self.w[d][n].mul_add(value, self.c[d][n] * column);
+                nodes[n] = self.w[d][n].mul_add(value, self.c[d][n] * column); // [SHP-7]
             }
         }
         Self::with_rest(nodes)
@@ -134,7 +134,7 @@ impl<V: Vector, const N: usize, const D: usize> Axes<V, N, D> {
                 None => nodes[n],
             };
             sum = self.w[d][n].mul_add(node, sum);
-            slope = self.c[d][n].mul_add(node, slope);
+            slope = self.c[d][n].mul_add(node, slope); // [SHP-7]
         }
         (sum, slope)
     }

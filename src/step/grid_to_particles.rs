@@ -294,7 +294,7 @@ impl<V: Vector, const D: usize> Taken<V, D> {
             velocity: each!(a in D => sums[1 + a]),
             increment: each!(a in D => sums[5 + a]),
             moment: each!(a in D, b in D => slopes[b][1 + a] * h),
-            gradient: each!(a in D, b in D => slopes[b][first + a] * inverse),
+            gradient: each!(a in D, b in D => slopes[b][first + a] * inverse), // [G2P-1]
         }
     }
 }

@@ -369,16 +369,16 @@ fn payload<V: Vector, const D: usize>(
     let zero = V::splat(0.0);
     let mass = V::load(&columns.mass[k..k + LANES]);
     let mut value = [zero; LANES];
-    value[0] = mass;
+    value[0] = mass; // [P2G-1]
     for a in 0..D {
-        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]);
+        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]); // [P2G-2]
     }
     let mut slopes = [[zero; LANES]; D];
     if let Some(affine) = &columns.affine {
         let mh = mass * V::splat(job.space.spacing);
         for d in 0..D {
             for a in 0..D {
-                slopes[d][1 + a] = mh * V::load(&affine[a][d][k..k + LANES]);
+                slopes[d][1 + a] = mh * V::load(&affine[a][d][k..k + LANES]); // [P2G-2]
             }
         }
     }
@@ -388,7 +388,7 @@ fn payload<V: Vector, const D: usize>(
         for d in 0..D {
             for a in 0..D {
                 let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];
-                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]);
+                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]); // [P2G-3]
             }
         }
     }

@@ -98,7 +98,7 @@ impl<const D: usize> State<D> {
         let c = |a: usize, b: usize| p.column(layout.affine + a * D + b)[k] * moment[b];
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if a < D && b < D {
-                spin[axis] = c(b, a) - c(a, b);
+                spin[axis] = c(b, a) - c(a, b); // [TRF-9]
             }
         }
         spin
