@@ -15,7 +15,7 @@ use crate::shape::modified::is_modified;
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each};
-use crate::transfer::{Received, TransferKind, apic, pic_flip, tpic};
+use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
 
 /// What a gather updates.
@@ -246,7 +246,7 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             if S::SIZED {
                 size = each!(d in D => V::load(&motion.other(job.size + d)[k..end]));
             }
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.at::<V, S, N>(x, size));
+            let stencil = job.space.stencil::<V, S, N>(x, size);
             self.weights[g].set(&stencil, job.transfer.is_affine());
             self.corners[g] = corners(&stencil, key);
         }
@@ -310,23 +310,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
 ) -> u8 {
     let old = each!(a in D => V::load(&motion.position[a][k..end]));
     if job.what.velocity() {
-        let mut v = received.velocity; // [TRF-1]
-        if job.transfer.is_affine() {
-            let c = affine::<V, S, N, D>(job, old, received);
-            for a in 0..D {
-                for b in 0..D {
-                    c[a][b].store(&mut motion.affine[a][b][k..end]);
-                }
-            }
-        } else if job.transfer.is_filtered() {
-            v = received.increment; // [TRF-6]
-        } else {
-            let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
-            v = pic_flip::velocity(old, received, job.pic_share);
-        }
-        for a in 0..D {
-            v[a].store(&mut motion.velocity[a][k..end]);
-        }
+        keep_velocity::<V, S, N, D>(job, old, received, motion, (k, end));
     }
     if job.what.gradient() {
         for a in 0..D {
@@ -335,9 +319,12 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
             }
         }
         if job.axisymmetric {
-            let of_r1 = job.gradient_lane() == 5;
-            let v = if of_r1 { received.increment[0] } else { received.velocity[0] };
-            (v / old[0]).store(&mut gradient.hoop[k..end]); // [AXI-2]
+            let inverse = V::splat(1.0) / old[0];
+            if job.gradient_lane() == 5 {
+                (received.increment[0] * inverse).store(&mut gradient.hoop[k..end]);
+            } else {
+                (received.velocity[0] * inverse).store(&mut gradient.hoop[k..end]); // [AXI-2]
+            }
         }
     }
     if job.what == Gather::Filter {
@@ -355,22 +342,52 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     outside::<V, S, N, D>(job, key, x, end - k)
 }
 
-/// Affine matrices of eight particles at `x`.
+/// Keeps the velocities, and affine matrices, of eight particles at `x`. (Each scheme stores for itself: a choice between values in memory
+/// would keep the compiler from holding them in registers.)
 #[inline(always)]
-fn affine<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+fn keep_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     x: [V; D],
     received: &Received<V, D>,
-) -> [[V; D]; D] {
-    if job.transfer == TransferKind::Tpic {
-        return tpic::affine(received);
+    motion: &mut Motion<'_, D>,
+    (k, end): (usize, usize),
+) {
+    if job.transfer.is_affine() {
+        for a in 0..D {
+            received.velocity[a].store(&mut motion.velocity[a][k..end]); // [TRF-1]
+        }
+        if job.transfer == TransferKind::Tpic {
+            for a in 0..D {
+                for b in 0..D {
+                    received.gradient[a][b].store(&mut motion.affine[a][b][k..end]); // [TRF-4]
+                }
+            }
+            return;
+        }
+        let mut modified = None;
+        if S::MODIFIED {
+            let (xi, walls) = (job.space.between_walls(x), &job.space.walls);
+            modified = Some(each!(d in D => {
+                is_modified::<V, S, N>(xi[d], [V::splat(walls[d][0]), V::splat(walls[d][1])])
+            }));
+        }
+        let c = apic::affine(received, S::MOMENT, job.space.spacing, modified);
+        for a in 0..D {
+            for b in 0..D {
+                c[a][b].store(&mut motion.affine[a][b][k..end]);
+            }
+        }
+    } else if job.transfer.is_filtered() {
+        for a in 0..D {
+            received.increment[a].store(&mut motion.velocity[a][k..end]); // [TRF-6]
+        }
+    } else {
+        let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
+        let v = pic_flip::velocity(old, received, job.pic_share);
+        for a in 0..D {
+            v[a].store(&mut motion.velocity[a][k..end]);
+        }
     }
-    let mut modified = None;
-    if S::MODIFIED {
-        let (xi, walls) = (job.space.between_walls(x), &job.space.walls);
-        modified = Some(each!(d in D => is_modified::<V, S, N>(xi[d], walls[d].map(V::splat))));
-    }
-    apic::affine(received, S::MOMENT, job.space.spacing, modified)
 }
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.

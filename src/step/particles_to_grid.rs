@@ -17,7 +17,7 @@ use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
 use crate::grid::{EDGE, Key, Lanes, Run};
 use crate::particles::Particles;
-use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::shape::stencil::ShapeFunction;
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
@@ -281,10 +281,10 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
         if S::SIZED {
             size = each!(d in D => V::load(&columns.size[d][k..k + LANES]));
         }
-        let stencil = Stencil::<V, N, D>::new::<S>(job.space.at::<V, S, N>(x, size));
+        let stencil = job.space.stencil::<V, S, N>(x, size);
         self.weights[g].set(&stencil, true);
         self.corners[g] = corners(&stencil, key);
-        (self.values[g], self.columns[g]) = payload(job, columns, x[0], k);
+        payload(job, columns, (x[0], k), (&mut self.values[g], &mut self.columns[g]));
     }
 
     /// Adds what the first `count` particles give to the tile.
@@ -363,15 +363,23 @@ impl<'a, const D: usize> Columns<'a, D> {
 fn payload<V: Vector, const D: usize>(
     job: &ScatterJob<'_, D>,
     columns: &Columns<'_, D>,
-    radius: V,
-    k: usize,
-) -> ([V; LANES], [[V; LANES]; D]) {
+    (radius, k): (V, usize),
+    (values, of_axes): (&mut [V; LANES], &mut [[V; LANES]; D]),
+) {
     let zero = V::splat(0.0);
     let mass = V::load(&columns.mass[k..k + LANES]);
     let mut value = [zero; LANES];
     value[0] = mass; // [P2G-1]
     for a in 0..D {
         value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]); // [P2G-2]
+    }
+    let whole = job.what == Scattered::Everything;
+    if whole && (job.axisymmetric || columns.body_force.is_some()) {
+        let mut value = value;
+        add_forces(job, columns, radius, k, &mut value);
+        *values = V::transpose(value);
+    } else {
+        *values = V::transpose(value); // three of its rows are zero
     }
     let mut slopes = [[zero; LANES]; D];
     if let Some(affine) = &columns.affine {
@@ -382,9 +390,8 @@ fn payload<V: Vector, const D: usize>(
             }
         }
     }
-    if job.what == Scattered::Everything {
-        let volume = V::load(&columns.volume[k..k + LANES]);
-        let scale = volume * V::splat(-job.space.inverse);
+    if whole {
+        let scale = V::load(&columns.volume[k..k + LANES]) * V::splat(-job.space.inverse);
         for d in 0..D {
             for a in 0..D {
                 let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];
@@ -393,13 +400,8 @@ fn payload<V: Vector, const D: usize>(
         }
     }
     for d in 0..D {
-        slopes[d] = V::transpose(slopes[d]);
+        of_axes[d] = V::transpose(slopes[d]);
     }
-    if job.what == Scattered::Everything && (job.axisymmetric || columns.body_force.is_some()) {
-        add_forces(job, columns, radius, k, &mut value);
-        return (V::transpose(value), slopes);
-    }
-    (V::transpose(value), slopes) // three of its rows are zero
 }
 
 /// Adds the forces at the particles themselves to the values of eight: body forces, and in axial symmetry that of the hoop stress.

@@ -9,7 +9,7 @@ use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Lanes, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
-use crate::shape::stencil::{At, ShapeFunction};
+use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
@@ -68,31 +68,32 @@ impl<const D: usize> Space<D> {
         each!(d in D => xi[d].max(R::splat(self.inside[d][0])).min(R::splat(self.inside[d][1])))
     }
 
-    /// Where a shape function is wanted for particles with edges `size` [m].
+    /// The stencil of particles with edges `size` [m].
     #[inline(always)]
-    pub fn at<R: Real, S: ShapeFunction<N>, const N: usize>(
+    pub fn stencil<R: Real, S: ShapeFunction<N>, const N: usize>(
         &self,
         x: [R; D],
         size: [R; D],
-    ) -> [At<R>; D] {
+    ) -> Stencil<R, N, D> {
         let xi = if S::MODIFIED { self.between_walls(x) } else { self.to_units(x) };
-        let half = R::splat(0.5 * self.inverse);
-        let mut at =
-            [At { xi: xi[0], half: size[0] * half, walls: self.walls[0].map(R::splat) }; D];
+        let mut axes = [S::axis(self.at(0, xi[0], size[0])); D];
         for d in 1..D {
-            at[d] = At { xi: xi[d], half: size[d] * half, walls: self.walls[d].map(R::splat) };
+            axes[d] = S::axis(self.at(d, xi[d], size[d]));
         }
-        at
+        Stencil { axes }
+    }
+
+    #[inline(always)]
+    fn at<R: Real>(&self, d: usize, xi: R, size: R) -> At<R> {
+        let [low, high] = self.walls[d];
+        let half = size * R::splat(0.5 * self.inverse);
+        At { xi, half, walls: [R::splat(low), R::splat(high)] }
     }
 
     /// Where any shape function is wanted for a point without extent.
     pub fn at_point(&self, x: [f64; D], size: [f64; D]) -> [At<f64>; D] {
         let xi = self.between_walls(x);
-        std::array::from_fn(|d| At {
-            xi: xi[d],
-            half: 0.5 * self.inverse * size[d],
-            walls: self.walls[d],
-        })
+        std::array::from_fn(|d| self.at(d, xi[d], size[d]))
     }
 }
 
