@@ -284,17 +284,20 @@ impl<V: Vector, const D: usize> Taken<V, D> {
     #[inline(always)]
     fn received(&self, job: &GatherJob<'_, D>, g: usize) -> Received<V, D> {
         let sums = V::transpose(self.sums[g]);
-        let mut slopes = self.slopes[g];
-        for d in 0..D {
-            slopes[d] = V::transpose(slopes[d]);
+        let mut slopes = [V::transpose(self.slopes[g][0]); D];
+        for d in 1..D {
+            slopes[d] = V::transpose(self.slopes[g][d]);
         }
         let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
-        let first = job.gradient_lane();
+        let second = job.gradient_lane() == 5;
         Received {
             velocity: each!(a in D => sums[1 + a]),
             increment: each!(a in D => sums[5 + a]),
             moment: each!(a in D, b in D => slopes[b][1 + a] * h),
-            gradient: each!(a in D, b in D => slopes[b][first + a] * inverse), // [G2P-1]
+            gradient: each!(a in D, b in D => {
+                let (low, high) = (slopes[b][1 + a], slopes[b][5 + a]);
+                (if second { high } else { low }) * inverse // [G2P-1]
+            }),
         }
     }
 }
