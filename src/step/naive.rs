@@ -4,7 +4,7 @@ pub mod nodes;
 
 use crate::shape::ShapeKind;
 use crate::step::StepOrder;
-use crate::transfer::{TransferKind, filter, pic_flip::pic_share};
+use crate::transfer::{TransferKind, pic_flip::pic_share};
 use nodes::{
     DV, F, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, gather, moment, near,
     reaches_behind_wall, scatter, strain, walled,
@@ -42,21 +42,19 @@ pub fn step<const D: usize>(
         n.1[DV] = n.1[V] - old;
     }
     let (xpic, filtered) = (o.transfer == TransferKind::Xpic, o.transfer.is_filtered());
-    for n in grid.values_mut().filter(|_| filtered) {
-        n.1[LAST] =
-            f64::from(o.filter_order) * (n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() });
-        n.1[U] = n.1[LAST] + if xpic { n.1[DV] } else { Vector::zeros() };
+    for (i, n) in grid.iter_mut().filter(|_| filtered) {
+        n.1[LAST] = n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() };
+        n.1[U] = walled(s, i, n.1[LAST]);
     }
-    for l in 2..=o.filter_order * i32::from(filtered) {
-        let v = gather(s, particles, &grid, LAST);
-        let again = scatter(s, particles, |k, _| v[k]);
+    for _ in 1..o.filter_order * i32::from(filtered) {
+        let u = gather(s, particles, &grid, U);
+        let again = scatter(s, particles, |k, _| u[k]);
         for (i, n) in &mut grid {
-            n.1[LAST] = filter::factor(o.filter_order, l) * again[i].1[MV] / n.0;
-            n.1[U] += n.1[LAST];
+            n.1[U] = walled(s, i, n.1[U] + n.1[LAST] - again[i].1[MV] / n.0);
         }
     }
     for (i, n) in grid.iter_mut().filter(|_| filtered) {
-        n.1[U] = walled(s, i, n.1[U]);
+        n.1[U] = walled(s, i, n.1[U] + n.1[V] - n.1[LAST]);
         n.1[V] = if xpic { n.1[V] } else { n.1[U] };
     }
     let [pic, flip, u] = [V, DV, U].map(|field| gather(s, particles, &grid, field));
