@@ -1,6 +1,7 @@
 //! Stage 4b, filter: the velocities u that particles take in XPIC and FMPM, see [`filter`](crate::transfer::filter). Other transfers pass.
 //!
-//! Each term of the filter goes from the grid to the particles and back, through R1. Walls act on u as they do on velocities.
+//! Each term of the filter sends u from the grid to the particles and back, through R1. Walls act on every u as they do on velocities: were
+//! they to act on the last one alone, what the filter amplifies and the walls cut off would come back larger in the next step.
 
 use rayon::prelude::*;
 
@@ -25,33 +26,34 @@ pub fn filter_velocities<const D: usize>(world: &mut State<D>) {
     let xpic = transfer == TransferKind::Xpic;
     let mut filtered = std::mem::take(&mut world.filtered);
     filtered.clear();
-    filtered.resize(world.grid.velocity.len(), [0.0; 4]);
-    // the first term, m v, and u, which begins with it and Δv
-    for_nodes(world, &mut filtered, |u, v, r1| {
+    filtered.resize(world.grid.velocity.len(), Filtered { start: [0.0; 4], u: [0.0; 4] });
+    for_nodes(world, &mut filtered, |node, v, r1| {
+        node.start = *v;
         for a in 1..=D {
-            let (start, change) = if xpic { (v[a] - r1[a], r1[a]) } else { (v[a], 0.0) };
-            r1[a] = f64::from(order) * start;
-            u[a] = change + r1[a];
+            node.start[a] -= if xpic { r1[a] } else { 0.0 };
         }
+        *r1 = node.start;
     });
-    for l in 2..=order {
+    hold(world, &mut filtered);
+    for _ in 1..order {
         world.for_each_chunk(|piece| {
             grid_to_particles(piece, Gather::Filter, 0.0);
             Outcome::default()
         });
         velocities_to_grid(world, Scattered::Filtered);
-        let factor = filter::factor(order, l);
-        for_nodes(world, &mut filtered, |u, v, r1| {
-            let inverse = if v[0] > 0.0 { factor / v[0] } else { 0.0 };
+        for_nodes(world, &mut filtered, |node, v, r1| {
+            let inverse = if v[0] > 0.0 { 1.0 / v[0] } else { 0.0 };
             for a in 1..=D {
-                r1[a] *= inverse;
-                u[a] += r1[a];
+                r1[a] = filter::add_term(node.u[a], node.start[a], inverse * r1[a]);
             }
         });
+        hold(world, &mut filtered);
     }
-    for_nodes(world, &mut filtered, |u, v, r1| {
-        u[0] = v[0];
-        *r1 = *u;
+    for_nodes(world, &mut filtered, |node, v, r1| {
+        r1[0] = v[0];
+        for a in 1..=D {
+            r1[a] = node.u[a] + (v[a] - node.start[a]);
+        }
     });
     hold_at_boundaries(world);
     if !xpic {
@@ -60,16 +62,31 @@ pub fn filter_velocities<const D: usize>(world: &mut State<D>) {
     world.filtered = filtered;
 }
 
-/// Calls `work` with u, R0 and R1 of every node.
+/// Applies the boundaries to the sum of the terms, which stands in R1.
+fn hold<const D: usize>(world: &mut State<D>, filtered: &mut [Filtered]) {
+    hold_at_boundaries(world);
+    for_nodes(world, filtered, |node, _, r1| node.u = *r1);
+}
+
+/// Velocities of a node on their way through a filter, in lanes 1 to D.
+#[derive(Clone, Copy)]
+pub struct Filtered {
+    /// What goes in.
+    start: Lanes,
+    /// The sum of the terms so far.
+    u: Lanes,
+}
+
+/// Calls `work` with the filtered velocities, R0 and R1 of every node.
 fn for_nodes<const D: usize>(
     world: &mut State<D>,
-    filtered: &mut [Lanes],
-    work: impl Fn(&mut Lanes, &mut Lanes, &mut Lanes) + Sync,
+    filtered: &mut [Filtered],
+    work: impl Fn(&mut Filtered, &mut Lanes, &mut Lanes) + Sync,
 ) {
     let grid = &mut world.grid;
-    let all = |((u, r0), r1): ((&mut [Lanes], &mut [Lanes]), &mut [Lanes])| {
-        for ((u, r0), r1) in u.iter_mut().zip(r0).zip(r1) {
-            work(u, r0, r1);
+    let all = |((nodes, r0), r1): ((&mut [Filtered], &mut [Lanes]), &mut [Lanes])| {
+        for ((node, r0), r1) in nodes.iter_mut().zip(r0).zip(r1) {
+            work(node, r0, r1);
         }
     };
     if world.parallel {

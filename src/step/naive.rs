@@ -4,7 +4,7 @@ pub mod nodes;
 
 use crate::shape::ShapeKind;
 use crate::step::StepOrder;
-use crate::transfer::{TransferKind, filter, pic_flip::pic_share};
+use crate::transfer::{TransferKind, pic_flip::pic_share};
 use nodes::{
     DV, F, Grid, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, gather, moment,
     near, reaches_behind_wall, scatter, strain, walled,
@@ -79,22 +79,20 @@ pub fn step<const D: usize>(
 
 /// The velocities that particles take in XPIC and FMPM; in the latter they are those of the grid too.
 fn filter_grid<const D: usize>(s: Setup<'_>, particles: &[Particle<D>], grid: &mut Grid<D>) {
-    let (m, xpic) = (s.0.filter_order, s.0.transfer == TransferKind::Xpic);
-    for n in grid.values_mut() {
-        let change = if xpic { n.1[DV] } else { Vector::zeros() };
-        n.1[LAST] = f64::from(m) * (n.1[V] - change);
-        n.1[U] = n.1[LAST] + change;
+    let xpic = s.0.transfer == TransferKind::Xpic;
+    for (i, n) in grid.iter_mut() {
+        n.1[LAST] = n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() };
+        n.1[U] = walled(s, i, n.1[LAST]);
     }
-    for l in 2..=m {
-        let v = gather(s, particles, grid, LAST);
-        let again = scatter(s, particles, |k, _| v[k]);
+    for _ in 1..s.0.filter_order {
+        let u = gather(s, particles, grid, U);
+        let again = scatter(s, particles, |k, _| u[k]);
         for (i, n) in grid.iter_mut() {
-            n.1[LAST] = filter::factor(m, l) * again[i].1[MV] / n.0;
-            n.1[U] += n.1[LAST];
+            n.1[U] = walled(s, i, n.1[U] + n.1[LAST] - again[i].1[MV] / n.0);
         }
     }
     for (i, n) in grid {
-        n.1[U] = walled(s, i, n.1[U]);
+        n.1[U] = walled(s, i, n.1[U] + n.1[V] - n.1[LAST]);
         n.1[V] = if xpic { n.1[V] } else { n.1[U] };
     }
 }

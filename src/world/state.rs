@@ -6,12 +6,13 @@ use crate::boundary::Wall;
 use crate::context::Context;
 use crate::error::{Place, Result};
 use crate::grid::key::split_node;
-use crate::grid::{Grid, GridPolicy, Key, Lanes, Run, TileNode, Tiles};
+use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
+use crate::step::filter_velocities::Filtered;
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
 use crate::step::time_step::Limits;
@@ -172,7 +173,7 @@ pub struct State<const D: usize> {
     /// Momentum that walls gave to the nodes of each block in a step.
     pub impulses: Vec<[f64; 3]>,
     /// Velocities of nodes on their way through a filter; used by filtered transfers alone.
-    pub filtered: Vec<Lanes>,
+    pub filtered: Vec<Filtered>,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.

@@ -68,8 +68,10 @@ pub enum Shape {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Walls {
-    /// None.
+    /// None, and walls where no free node's function reaches them, see [`Method::wall_shift`].
     Plain,
+    /// None, and walls on node planes whatever the shape: the nodes on them and behind are held.
+    PlainOnNodes,
     /// Modified shape functions.
     Modified,
 }
@@ -140,7 +142,7 @@ impl Method {
             },
             cfl: self.cfl,
             wall_treatment: match self.walls {
-                Walls::Plain => WallTreatment::Plain,
+                Walls::Plain | Walls::PlainOnNodes => WallTreatment::Plain,
                 Walls::Modified => WallTreatment::Modified,
             },
             filter_order: self.filter_order,
@@ -170,10 +172,31 @@ pub fn context(model: &str) -> Result<Arc<Context>> {
     Ok(context)
 }
 
-/// A linear elastic material and its context.
-pub fn elastic(youngs_modulus: f64, poissons_ratio: f64) -> Result<(Arc<Context>, Arc<Material>)> {
-    let values = [("youngs_modulus", youngs_modulus), ("poissons_ratio", poissons_ratio)];
-    material("linear_elastic", &values)
+/// Models of elasticity by name.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Elastic {
+    /// Strain increments and their rotation.
+    #[default]
+    LinearElastic,
+    /// From the deformation gradient.
+    NeoHookean,
+}
+
+impl Elastic {
+    /// A material and its context.
+    pub fn material(
+        self,
+        youngs_modulus: f64,
+        poissons_ratio: f64,
+    ) -> Result<(Arc<Context>, Arc<Material>)> {
+        let model = match self {
+            Self::LinearElastic => "linear_elastic",
+            Self::NeoHookean => "neo_hookean",
+        };
+        let values = [("youngs_modulus", youngs_modulus), ("poissons_ratio", poissons_ratio)];
+        material(model, &values)
+    }
 }
 
 /// A material of any shipped model and its context.
@@ -242,6 +265,21 @@ pub fn read(world: &World, body: i64, field: &str) -> Result<Vec<f64>> {
 pub fn write(world: &mut World, body: i64, field: &str, data: &[f64]) -> Result<()> {
     let components = world.field_info(body, field)?.components;
     world.write_field(body, field, &Strided::interleaved(data, components)?)
+}
+
+/// Sets the velocities of a body, and their gradients [xx, xy, yx, yy] if its particles carry an affine matrix.
+pub fn write_flow(
+    world: &mut World,
+    body: i64,
+    flow: impl Fn(&[f64; 2]) -> ([f64; 2], [f64; 4]),
+) -> Result<()> {
+    let (v, gradient): (Vec<[f64; 2]>, Vec<[f64; 4]>) =
+        positions(world, body)?.iter().map(flow).unzip();
+    write(world, body, "velocity", v.as_flattened())?;
+    if world.options().transfer.is_affine() {
+        write(world, body, "affine", gradient.as_flattened())?;
+    }
+    Ok(())
 }
 
 /// Positions in the plane, in the order of the ids.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use crate::judge::slope;
 use crate::run::Outcome;
-use crate::world::{Method, elastic, fill, positions, rectangle, wall, write};
+use crate::world::{Elastic, Method, fill, rectangle, wall, write_flow};
 
 /// L = 25 m, E = 100 Pa, ρ = 1 kg/m³, ν = 0; v = 0.1 sin(β x) with β = (2 mode − 1) π / 50.
 #[derive(Deserialize)]
@@ -35,9 +35,10 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
     let beta = (2 * setup.mode - 1) as f64 * PI / (2.0 * LENGTH);
     let period = 2.0 * PI / (beta * WAVE_SPEED);
     let (mut world, body) = bar(setup)?;
-    let v: Vec<[f64; 2]> =
-        positions(&world, body)?.iter().map(|x| [SPEED * (beta * x[0]).sin(), 0.0]).collect();
-    write(&mut world, body, "velocity", v.as_flattened())?;
+    write_flow(&mut world, body, |x| {
+        let (s, c) = (beta * x[0]).sin_cos();
+        ([SPEED * s, 0.0], [SPEED * beta * c, 0.0, 0.0, 0.0])
+    })?;
     let h = LENGTH / setup.cells as f64;
     let dt = setup.method.cfl * h / (1.02 * WAVE_SPEED);
     let mass = world.totals(None)?.mass;
@@ -71,7 +72,7 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
 
 /// One row of cells between walls that keep its height.
 fn bar(setup: &Setup) -> Result<(World, i64)> {
-    let (context, material) = elastic(100.0, 0.0)?;
+    let (context, material) = Elastic::LinearElastic.material(100.0, 0.0)?;
     let h = LENGTH / setup.cells as f64;
     let mut options = setup.method.options(h);
     options.origin = [setup.method.wall_shift() * h; 3];

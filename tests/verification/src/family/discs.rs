@@ -5,7 +5,7 @@ use lahar::world::World;
 use serde::Deserialize;
 
 use crate::run::Outcome;
-use crate::world::{Method, disc, elastic, fill, positions, write};
+use crate::world::{Elastic, Method, disc, fill, positions, write};
 
 /// r = 0.2 m at (0.2, 0.2) and (0.8, 0.8), E = 1000 Pa, ν = 0.3, ρ = 1000 kg/m³, v = ±(0.1, 0.1) m/s, until t = 3.5 s.
 #[derive(Deserialize)]
@@ -14,6 +14,9 @@ pub struct Setup {
     method: Method,
     /// Cells along 1 m.
     cells: usize,
+    /// Model.
+    #[serde(default)]
+    model: Elastic,
 }
 
 const YOUNG: f64 = 1000.0;
@@ -69,7 +72,7 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
 }
 
 fn two_discs(setup: &Setup) -> Result<(World, [i64; 2])> {
-    let (context, material) = elastic(YOUNG, POISSON)?;
+    let (context, material) = setup.model.material(YOUNG, POISSON)?;
     let mut world = World::new(&context, &setup.method.options(1.0 / setup.cells as f64))?;
     let mut bodies = [0; 2];
     for (body, (c, v)) in bodies.iter_mut().zip([(0.2, 0.1), (0.8, -0.1)]) {

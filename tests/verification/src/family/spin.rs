@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::f64::consts::TAU;
 
 use crate::run::Outcome;
-use crate::world::{Method, Transfer, advance, disc, elastic, fill, positions, write};
+use crate::world::{Elastic, Method, advance, disc, fill, positions, write_flow};
 
 /// r = 0.25 m at (0.5, 0.5), E = 1000 Pa, ν = 0.3, ρ = 1000 kg/m³, ω = 0.2 rad/s, 2 × 2 particles a cell, one turn.
 #[derive(Deserialize)]
@@ -15,6 +15,9 @@ pub struct Setup {
     method: Method,
     /// Cells along 1 m.
     cells: usize,
+    /// Model.
+    #[serde(default)]
+    model: Elastic,
 }
 
 const CENTER: f64 = 0.5;
@@ -24,17 +27,15 @@ const SPIN: f64 = 0.2;
 /// Gives `angular_momentum` and `kinetic` (after the turn, over those at the start), `angular_momentum_error` (|ratio − 1|),
 /// `position_error` (largest distance from where a rigid disc would be, over h), and the curve `angular_momentum` over turns.
 pub fn run(setup: &Setup) -> Result<Outcome> {
-    let (context, material) = elastic(1000.0, 0.3)?;
+    let (context, material) = setup.model.material(1000.0, 0.3)?;
     let h = 1.0 / setup.cells as f64;
     let mut world = World::new(&context, &setup.method.options(h))?;
     let body = fill(&mut world, &material, &disc([CENTER; 2], RADIUS), 1000.0, 2)?;
     let start = positions(&world, body)?;
-    let v: Vec<[f64; 2]> =
-        start.iter().map(|x| [-SPIN * (x[1] - CENTER), SPIN * (x[0] - CENTER)]).collect();
-    write(&mut world, body, "velocity", v.as_flattened())?;
-    if setup.method.transfer == Transfer::Apic {
-        write(&mut world, body, "affine", &[0.0, -SPIN, SPIN, 0.0].repeat(v.len()))?;
-    }
+    write_flow(&mut world, body, |x| {
+        let v = [-SPIN * (x[1] - CENTER), SPIN * (x[0] - CENTER)];
+        (v, [0.0, -SPIN, SPIN, 0.0])
+    })?;
     let begin = world.totals(None)?;
     let end = TAU / SPIN;
     let mut curve = vec![[0.0, 1.0]];

@@ -22,9 +22,6 @@ pub struct Setup {
     /// Local damping.
     #[serde(default)]
     damping: f64,
-    /// Walls of quadratic shapes on node planes instead of half-cell planes.
-    #[serde(default)]
-    walls_on_nodes: bool,
 }
 
 #[derive(Deserialize, PartialEq, Eq)]
@@ -75,8 +72,7 @@ fn tank(setup: &Setup) -> Result<(World, i64)> {
     let (context, water) = material("newtonian", &values)?;
     let h = DEPTH / setup.cells as f64;
     let mut options = setup.method.options(h);
-    let shift = if setup.walls_on_nodes { 0.0 } else { setup.method.wall_shift() * h };
-    options.origin = [shift; 3];
+    options.origin = [setup.method.wall_shift() * h; 3];
     options.damping = setup.damping;
     let mut world = World::new(&context, &options)?;
     for (axis, side, position) in [(0, 1, 0.0), (0, -1, WIDTH), (1, 1, 0.0)] {
