@@ -10,6 +10,8 @@
 
 pub mod case;
 pub mod family;
+pub mod jet;
 pub mod judge;
+pub mod motion;
 pub mod run;
 pub mod world;
