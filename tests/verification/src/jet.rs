@@ -72,14 +72,18 @@ impl Add for Jet {
 impl Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let (f, g) = (&self, &other);
-        let mixed = |a: usize, b: usize| f.first[a] * g.first[b] + f.first[b] * g.first[a];
-        let second = |a: usize, b: usize| f.value * g.second[a][b] + g.value * f.second[a][b];
-        Self {
-            value: f.value * g.value,
-            first: std::array::from_fn(|a| f.value * g.first[a] + g.value * f.first[a]),
-            second: table(|a, b| second(a, b) + mixed(a, b)),
-        }
+        product(&self, &other)
+    }
+}
+
+/// The product rule.
+fn product(f: &Jet, g: &Jet) -> Jet {
+    let mixed = |a: usize, b: usize| f.first[a] * g.first[b] + f.first[b] * g.first[a];
+    let own = |a: usize, b: usize| f.value * g.second[a][b] + g.value * f.second[a][b];
+    Jet {
+        value: f.value * g.value,
+        first: std::array::from_fn(|a| f.value * g.first[a] + g.value * f.first[a]),
+        second: table(|a, b| own(a, b) + mixed(a, b)),
     }
 }
 
