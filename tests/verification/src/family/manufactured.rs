@@ -33,10 +33,17 @@ pub struct Setup {
     particles_per_cell: usize,
     /// End, in units of 1 m / c, c = √(E / ρ).
     end: f64,
+    /// Factor on the body force; with another than 1 the motion is not the chosen one.
+    #[serde(default = "whole")]
+    force: f64,
 }
 
 fn plane() -> usize {
     2
+}
+
+fn whole() -> f64 {
+    1.0
 }
 
 impl Setup {
@@ -85,7 +92,7 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
         if step == steps as usize {
             break;
         }
-        let force = columns(exact.len(), d, |k, c| exact[k].body_force[c]);
+        let force = columns(exact.len(), d, |k, c| setup.force * exact[k].body_force[c]);
         write(&mut world, body, "body_force", &force)?;
         world.step(Some(dt))?;
     }
