@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Every driver with arguments for a short run.
-const DRIVERS: [(&str, &[&str]); 5] = [
+const DRIVERS: [(&str, &[&str]); 6] = [
     ("01_hello", &["20"]),
     ("02_column_collapse", &["a=0.5", "cells=8", "steps=20", "frames=."]),
     ("03_dam_break", &["cells=8", "steps=20", "table=../martin_moyce_1952.csv"]),
     ("04_grid", &["20"]),
     ("05_host_arrays", &["6", "20"]),
+    ("06_convergence", &["4", "2"]),
 ];
 
 /// What a driver prints: names and numbers.
@@ -85,7 +86,7 @@ fn a_block_falls_as_galilei_says() {
 
 #[test]
 fn drivers_compile_as_cplusplus_and_give_the_same_numbers() {
-    for (driver, arguments) in [DRIVERS[0], DRIVERS[3], DRIVERS[4]] {
+    for (driver, arguments) in [DRIVERS[0], DRIVERS[3], DRIVERS[4], DRIVERS[5]] {
         let c = results(&c_program(driver), arguments);
         let cplusplus = results(&compile("g++", &["-std=c++11", "-x", "c++"], driver), arguments);
         assert_eq!(c.0, cplusplus.0, "{driver}");
@@ -234,4 +235,22 @@ fn soil_from_the_arrays_of_a_host_rests_under_its_stresses_and_slides_when_dug()
     r.assert_close("forgotten_largest_plastic_strain", 0.0, 0.0);
     r.assert_close("stopped_kinetic_energy", 0.0, 0.0);
     r.assert_close("slides_again", 1.0, 0.0);
+}
+
+// ---- 06, orders of convergence (D4)
+
+#[test]
+fn contiguous_domains_and_cubic_splines_keep_the_order_and_linear_shapes_diverge() {
+    let r = results(&c_program("06_convergence"), &[]);
+    r.assert_in("contiguous_gimp_order", 1.9, 2.2);
+    r.assert_in("cubic_order", 1.8, 2.2);
+    r.assert_in("linear_order", -10.0, 0.0);
+}
+
+#[test]
+fn all_shapes_are_of_second_order_where_no_particle_crosses_a_cell() {
+    let r = results(&c_program("06_convergence"), &["16", "3", "1e-4"]);
+    for shape in ["linear", "contiguous_gimp", "cubic"] {
+        r.assert_in(&format!("{shape}_order"), 1.85, 2.2);
+    }
 }

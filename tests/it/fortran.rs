@@ -11,10 +11,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Drivers that exist in both languages, with arguments for a short run.
-const TWINS: [(&str, &[&str]); 3] = [
+const TWINS: [(&str, &[&str]); 4] = [
     ("01_hello", &["100"]),
     ("02_column_collapse", &["a=0.5", "a=2", "cells=16", "steps=300"]),
     ("05_host_arrays", &["8", "100"]),
+    ("06_convergence", &["8", "3", "0.02"]),
 ];
 
 const STRICT: [&str; 4] = ["-std=f2018", "-Wall", "-Werror", "-fimplicit-none"];

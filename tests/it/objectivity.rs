@@ -1,93 +1,44 @@
 //! Homogeneous motions, prescribed at the nodes: every measure of strain against its closed form, in 2D and 3D.
 
 use std::ffi::CStr;
-use std::sync::Arc;
 
 use lahar::error::Status;
 use lahar::material::Material;
 use lahar::simd::Isa;
-use lahar::step::StepOrder;
-use lahar::transfer::TransferKind;
-use lahar::world::World;
-use lahar::world::hooks::{HookArguments, HookPoint};
-use lahar::world::options::Options;
-use lahar_plugin::nalgebra::{Matrix3, Rotation3, Vector3};
+use lahar_plugin::nalgebra::Vector3;
 use lahar_plugin::{Batch, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, State};
+use lahar_verification::homogeneous::{Block, DT, Mat3, dienes, shear, stretch};
 
-use crate::setup::{a_box, context_with, fill, read, world, write};
-
-type Mat3 = Matrix3<f64>;
+use crate::setup::{context_with, read};
 
 const E: f64 = 1e6;
 const NU: f64 = 0.3;
 const MU: f64 = E / (2.0 * (1.0 + NU));
 const LAMBDA: f64 = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU));
-const DT: f64 = 1e-3; // [s]
 
-/// A block, and the field of velocities that its nodes are given.
-struct Block {
-    world: World,
-    body: i64,
+/// A block of a model.
+fn block(dimension: usize, model: &str, isa: Isa) -> Block {
+    let context = context_with(1, isa);
+    if model == Follower::NAME.to_str().unwrap() {
+        context.register_plugin(FOLLOWER.desc()).expect("a good table");
+    }
+    let values: &[(&str, f64)] = match model {
+        "follower" => &[],
+        _ => &[("youngs_modulus", E), ("poissons_ratio", NU)],
+    };
+    let material = Material::new(&context, model, values).expect("a material");
+    Block::new(&context, &material, dimension).expect("a block")
 }
 
-impl Block {
-    fn new(dimension: usize, model: &str, isa: Isa) -> Self {
-        let context = context_with(1, isa);
-        if model == Follower::NAME.to_str().unwrap() {
-            context.register_plugin(FOLLOWER.desc()).expect("a good table");
-        }
-        let values: &[(&str, f64)] = match model {
-            "follower" => &[],
-            _ => &[("youngs_modulus", E), ("poissons_ratio", NU)],
-        };
-        let material: Arc<Material> = Material::new(&context, model, values).expect("a material");
-        let options = Options {
-            dimension,
-            spacing: 0.1,
-            transfer: TransferKind::PicFlip,
-            order: StepOrder::Usl,
-            cfl: 1.0,
-            ..Options::default()
-        };
-        let mut world = world(&context, &options);
-        let region = a_box([-0.2, -0.2, -0.1], [0.3, 0.2, 0.1]);
-        let body = fill(&mut world, &material, &region, 1000.0, [0.0; 3]);
-        Self { world, body }
-    }
+/// A field of six components, which must be the same in all particles up to `spread`.
+fn tensor(block: &Block, field: &str, spread: f64) -> Mat3 {
+    let (mean, away) = block.tensor(field).expect("a field");
+    assert!(away <= spread, "{field} differs by {away:e} between particles");
+    mean
+}
 
-    /// Gives the nodes the velocities L x in every step.
-    fn set_field(&mut self, l: Mat3) {
-        let field = move |hook: HookArguments<'_>| {
-            for node in 0..hook.nodes.count() {
-                let v = l * Vector3::from(hook.nodes.position(node));
-                hook.nodes.set_velocity(node, v.into());
-            }
-        };
-        self.world.set_hook(HookPoint::AfterBoundaries, Some(Box::new(field)));
-    }
-
-    /// Steps with the velocities L x.
-    fn drive(&mut self, l: Mat3, steps: usize) {
-        self.set_field(l);
-        for _ in 0..steps {
-            self.world.step(Some(DT)).expect("a step");
-        }
-    }
-
-    /// A field of six components, which must be the same in all particles up to `spread`.
-    fn tensor(&self, field: &str, spread: f64) -> Mat3 {
-        let all = read(&self.world, self.body, field);
-        for s in all.chunks(6) {
-            let away = (0..6).fold(0.0, |m, c| f64::max(m, (s[c] - all[c]).abs()));
-            assert!(away <= spread, "{field} differs by {away:e} between particles");
-        }
-        let [xx, yy, zz, xy, yz, zx] = all[..6] else { panic!("six components") };
-        Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
-    }
-
-    fn stress(&self) -> Mat3 {
-        self.tensor("stress", 1e-9 * E)
-    }
+fn stress(block: &Block) -> Mat3 {
+    tensor(block, "stress", 1e-9 * E)
 }
 
 /// Keeps stress and a tensor of its own as the engine turned them.
@@ -123,31 +74,18 @@ impl Model for Follower {
     }
 }
 
-fn shear(rate: f64) -> Mat3 {
-    Mat3::new(0.0, rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-}
-
 /// Stress after a simple shear γ in so many steps.
 fn sheared(dimension: usize, model: &str, gamma: f64, steps: usize) -> Mat3 {
-    let mut block = Block::new(dimension, model, Isa::best());
+    let mut block = block(dimension, model, Isa::best());
     let volumes = read(&block.world, block.body, "volume");
-    block.drive(shear(gamma / (steps as f64 * DT)), steps);
+    block.drive(shear(gamma, steps), steps).expect("steps");
     for (new, old) in read(&block.world, block.body, "volume").iter().zip(volumes) {
         assert!((new / old - 1.0).abs() < 1e-12, "shear keeps the volume");
     }
-    block.stress()
+    stress(&block)
 }
 
-/// xy and xx of the Green–Naghdi hypoelastic stress over μ after a simple shear (Dienes 1979).
-fn dienes(gamma: f64) -> (f64, f64) {
-    let b = f64::atan(0.5 * gamma);
-    let (s, c) = f64::sin_cos(2.0 * b);
-    let ln = b.cos().ln();
-    let xy = 2.0 * c * (2.0 * b - 2.0 * f64::tan(2.0 * b) * ln - b.tan());
-    (xy, 4.0 * (c * ln + b * s - b.sin().powi(2)))
-}
-
-/// The same by integrating dσ/dγ = Ω σ − σ Ω + 2 D, Ω = dR/dγ Rᵀ (Runge and Kutta's fourth order): R turns by −atan(γ/2).
+/// The closed form of Dienes, xy and xx, by integrating dσ/dγ = Ω σ − σ Ω + 2 D, Ω = dR/dγ Rᵀ (Runge and Kutta's fourth order): R turns by −atan(γ/2).
 fn dienes_integrated(gamma: f64) -> (f64, f64) {
     let rate = |g: f64, [xx, xy]: [f64; 2]| {
         let w = 0.5 / (1.0 + 0.25 * g * g); // yy = −xx
@@ -236,40 +174,39 @@ fn jaumann_stress_in_simple_shear_oscillates_and_green_naghdi_stress_follows_die
 #[test]
 fn confined_compression_and_extension_have_the_stress_and_volume_of_the_closed_form() {
     let known = [(0.5, -1376708.0), (0.8, -333997.8), (1.2, 228680.2), (1.5, 476460.9)];
-    for (dimension, (stretch, neo)) in [2, 3, 2, 3].into_iter().zip(known) {
+    for (dimension, (lambda, neo)) in [2, 3, 2, 3].into_iter().zip(known) {
         let steps = 200;
-        let growth = f64::powf(stretch, 1.0 / steps as f64) - 1.0;
-        let l = Mat3::from_diagonal(&Vector3::new(growth / DT, 0.0, 0.0));
-        let summed = steps as f64 * growth; // what the increments of strain sum up to
+        let l = stretch(lambda, steps);
+        let summed = steps as f64 * l[(0, 0)] * DT; // what the increments of strain sum up to
         let m = LAMBDA + 2.0 * MU;
         let expected = [
-            ("neo_hookean", (MU * (stretch * stretch - 1.0) + LAMBDA * stretch.ln()) / stretch),
-            ("hencky", m * stretch.ln() / stretch),
+            ("neo_hookean", (MU * (lambda * lambda - 1.0) + LAMBDA * f64::ln(lambda)) / lambda),
+            ("hencky", m * f64::ln(lambda) / lambda),
             ("linear_elastic", m * summed),
             ("linear_elastic_green_naghdi", m * summed),
         ];
         assert!((expected[0].1 / neo - 1.0).abs() < 1e-6, "the formula of the test");
         for (model, axial) in expected {
-            let mut block = Block::new(dimension, model, Isa::best());
+            let mut block = block(dimension, model, Isa::best());
             let volumes = read(&block.world, block.body, "volume");
-            block.drive(l, steps);
-            let s = block.stress();
-            assert!((s[(0, 0)] - axial).abs() < 1e-11 * E, "{model} {stretch}: {s}, not {axial}");
+            block.drive(l, steps).expect("steps");
+            let s = stress(&block);
+            assert!((s[(0, 0)] - axial).abs() < 1e-11 * E, "{model} {lambda}: {s}, not {axial}");
             // V = V0 det F where F is carried, else V0 exp(tr Δε) step by step
-            let ratio = if model == "linear_elastic" { summed.exp() } else { stretch };
+            let ratio = if model == "linear_elastic" { summed.exp() } else { lambda };
             for (new, old) in read(&block.world, block.body, "volume").iter().zip(volumes) {
                 assert!((new / old / ratio - 1.0).abs() < 1e-12, "{model}: {}", new / old);
             }
         }
         // what the two volumes differ by is what the test would miss otherwise
-        assert!((summed.exp() / stretch - 1.0).abs() > 1e-5);
+        assert!((summed.exp() / lambda - 1.0).abs() > 1e-5);
     }
 }
 
 #[test]
 fn the_volume_of_what_carries_f_is_that_of_f_in_any_motion() {
     for dimension in [2, 3] {
-        let mut block = Block::new(dimension, "hencky", Isa::best());
+        let mut block = block(dimension, "hencky", Isa::best());
         let volume = read(&block.world, block.body, "volume")[0];
         for n in 0..3 {
             let x = |c: usize| ((7 * n + 5 * c + 1) as f64).sin();
@@ -277,7 +214,7 @@ fn the_volume_of_what_carries_f_is_that_of_f_in_any_motion() {
             if dimension == 2 {
                 l = l.component_mul(&Mat3::new(1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0));
             }
-            block.drive(l, 200);
+            block.drive(l, 200).expect("steps");
         }
         let volumes = read(&block.world, block.body, "volume");
         let f = read(&block.world, block.body, "deformation_gradient");
@@ -289,48 +226,16 @@ fn the_volume_of_what_carries_f_is_that_of_f_in_any_motion() {
     }
 }
 
-/// The velocity gradient that turns by the angle in one step as the kinematics of the model see it, and the rotation.
-fn turn(model: &str, axis: Vector3<f64>, angle: f64) -> (Mat3, Mat3) {
-    let unit = axis.normalize();
-    let spin = unit.cross_matrix();
-    let rotation = Rotation3::new(angle * unit).into_inner();
-    let l = match model {
-        "linear_elastic" => angle * spin, // exp(W dt)
-        "neo_hookean" | "hencky" => rotation - Mat3::identity(), // I + dt L
-        _ => angle.tan() * spin,          // the rotation in I + dt L, without strain
-    };
-    (l / DT, rotation)
-}
-
-/// Prestresses a block by a deformation gradient or by a stress, turns it by a right angle in 1000 steps, and gives the largest defect
-/// of R σ Rᵀ over the largest stress.
+/// Stresses a block, turns it by a right angle in 1000 steps, and gives the largest defect of R σ Rᵀ over the largest stress.
 fn turn_defect(dimension: usize, model: &str, isa: Isa, axis: Vector3<f64>) -> f64 {
-    let mut block = Block::new(dimension, model, isa);
-    let n = block.world.particle_count(block.body).expect("a body");
-    let out = if dimension == 3 { 1.0 } else { 0.0 };
-    if ["neo_hookean", "hencky"].contains(&model) {
-        let f = [1.1, 0.2, 0.1 * out, -0.1, 0.9, 0.0, 0.05 * out, 0.1 * out, 1.05];
-        write(&mut block.world, block.body, "deformation_gradient", &f.repeat(n));
-        let j = Mat3::from_row_slice(&f).determinant();
-        let volumes: Vec<f64> =
-            read(&block.world, block.body, "volume").iter().map(|v| v * j).collect();
-        write(&mut block.world, block.body, "volume", &volumes);
-        block.drive(Mat3::zeros(), 1); // the model fills in the stress
-    } else {
-        let s = [1e4, -5e3, 3e3, 4e3, 2e3 * out, 1e3 * out];
-        write(&mut block.world, block.body, "stress", &s.repeat(n));
-        if model == "follower" {
-            write(&mut block.world, block.body, "back_stress", &s.repeat(n));
-        }
-    }
-    let before = block.stress();
-    let angle = std::f64::consts::FRAC_PI_2;
-    block.drive(turn(model, axis, angle / 1000.0).0, 1000);
-    let r = Rotation3::new(angle * axis.normalize()).into_inner();
-    let expected = r * before * r.transpose();
-    let mut defect = (block.stress() - expected).amax();
+    let mut block = block(dimension, model, isa);
     if model == "follower" {
-        defect = defect.max((block.tensor("back_stress", 1e-3) - expected).amax());
+        block.set_start("back_stress").expect("a field");
+    }
+    let [before, expected] = block.turn(model, axis, 1000).expect("steps");
+    let mut defect = (stress(&block) - expected).amax();
+    if model == "follower" {
+        defect = defect.max((tensor(&block, "back_stress", 1e-3) - expected).amax());
     }
     assert!((before - expected).amax() > 0.5 * before.amax(), "the turn changes the stress");
     defect / before.amax()
@@ -353,7 +258,7 @@ fn a_right_angle_turns_the_stress_of_every_kind_of_model_with_the_body() {
 #[test]
 fn a_step_that_turns_particles_inside_out_is_an_error() {
     for (growth, good) in [(-0.9, true), (-1.1, false)] {
-        let mut block = Block::new(2, "follower", Isa::best());
+        let mut block = block(2, "follower", Isa::best());
         let l = Mat3::from_diagonal(&Vector3::new(growth / DT, 0.0, 0.0));
         block.set_field(l);
         let result = block.world.step(Some(DT));

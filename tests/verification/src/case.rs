@@ -102,7 +102,7 @@ pub enum Gate {
     Between(f64, f64),
 }
 
-/// An observed order of convergence: the slope of log error over log h, where h is 1 / `cells` of the set-up.
+/// An observed order of convergence: the slope of log error over log h, where h is 1 / `cells` of the set-up, or 1 / `steps`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Order {
@@ -214,11 +214,13 @@ impl Case {
         })
     }
 
-    /// Cells of a run, for an order.
+    /// Cells of a run, for an order; steps if it has none.
     pub fn cells_of(&self, name: &str) -> Result<f64, String> {
         let setup = self.setup_of(self.run(name)?);
-        let cells = setup.get("cells").and_then(Value::as_f64);
-        cells.ok_or_else(|| format!("run \"{name}\" has no `cells`, which an order needs"))
+        let cells = setup.get("cells").or_else(|| setup.get("steps")).and_then(Value::as_f64);
+        cells.ok_or_else(|| {
+            format!("run \"{name}\" has no `cells` or `steps`, which an order needs")
+        })
     }
 
     /// Runs that a check, an order or a plot needs, by name, beside the runs that stand in several places.

@@ -10,6 +10,9 @@
 
 pub mod case;
 pub mod family;
+pub mod homogeneous;
+pub mod jet;
 pub mod judge;
+pub mod motion;
 pub mod run;
 pub mod world;

@@ -5,6 +5,8 @@ mod column;
 mod dam;
 mod discs;
 mod element;
+mod homogeneous;
+mod manufactured;
 mod slosh;
 mod spin;
 mod tank;
@@ -30,6 +32,8 @@ const FAMILIES: &[(&str, Prepare)] = &[
     ("dam", |setup| with(setup, dam::run)),
     ("discs", |setup| with(setup, discs::run)),
     ("element", |setup| with(setup, element::run)),
+    ("homogeneous", |setup| with(setup, homogeneous::run)),
+    ("manufactured", |setup| with(setup, manufactured::run)),
     ("slosh", |setup| with(setup, slosh::run)),
     ("spin", |setup| with(setup, spin::run)),
     ("tank", |setup| with(setup, tank::run)),
