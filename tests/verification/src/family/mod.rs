@@ -5,6 +5,7 @@ mod column;
 mod dam;
 mod discs;
 mod element;
+mod self_weight;
 mod slosh;
 mod spin;
 mod tank;
@@ -30,6 +31,7 @@ const FAMILIES: &[(&str, Prepare)] = &[
     ("dam", |setup| with(setup, dam::run)),
     ("discs", |setup| with(setup, discs::run)),
     ("element", |setup| with(setup, element::run)),
+    ("self_weight", |setup| with(setup, self_weight::run)),
     ("slosh", |setup| with(setup, slosh::run)),
     ("spin", |setup| with(setup, spin::run)),
     ("tank", |setup| with(setup, tank::run)),
