@@ -1,7 +1,9 @@
 //! The drivers: one file for each family of cases. A driver is a function from a set-up to an [`Outcome`].
 
 mod bar;
+mod cantilever;
 mod column;
+mod cylinder;
 mod dam;
 mod discs;
 mod element;
@@ -27,7 +29,9 @@ type Prepare = fn(&Value) -> Result<Prepared, String>;
 /// Every family under its name in the files of the cases.
 const FAMILIES: &[(&str, Prepare)] = &[
     ("bar", |setup| with(setup, bar::run)),
+    ("cantilever", |setup| with(setup, cantilever::run)),
     ("column", |setup| with(setup, column::run)),
+    ("cylinder", |setup| with(setup, cylinder::run)),
     ("dam", |setup| with(setup, dam::run)),
     ("discs", |setup| with(setup, discs::run)),
     ("element", |setup| with(setup, element::run)),
