@@ -10,13 +10,15 @@ use crate::run::Outcome;
 use crate::statics::{at_zero, pull, ramp, settle};
 use crate::world::{Method, fill, material, positions, rectangle, wall};
 
-/// L = 10 m, d = 1 m, plane strain, Hencky's law with E = 12 MPa, ν = 0.2, ρ = 1000 kg/m³; the load grows over two periods of the first
+/// L = 10 m, plane strain, Hencky's law with E = 12 MPa, ν = 0.2, ρ = 1000 kg/m³; the load grows over a period of the first
 /// mode.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setup {
     method: Method,
-    /// Cells across the depth d.
+    /// Depth d [m].
+    depth: f64,
+    /// Cells across the depth.
     cells: usize,
     /// Particles a cell along each axis.
     particles_per_cell: i32,
@@ -40,7 +42,6 @@ enum Load {
 }
 
 const LENGTH: f64 = 10.0;
-const DEPTH: f64 = 1.0;
 const YOUNG: f64 = 12e6;
 const POISSON: f64 = 0.2;
 const DENSITY: f64 = 1000.0;
@@ -50,19 +51,19 @@ const FIRST_MODE: f64 = 3.516_015;
 /// Gives `deflection` and `shortening` of the middle of the end face over L, `settled`, `unbalanced`, `kinetic` (energy over the strain
 /// energy), and the curve `axis`, the middle line over L.
 pub fn run(setup: &Setup) -> Result<Outcome> {
-    let h = DEPTH / setup.cells as f64;
+    let h = setup.depth / setup.cells as f64;
     let (mut world, body) = beam(setup, h)?;
     let start = positions(&world, body)?;
-    let bending = YOUNG / (1.0 - POISSON * POISSON) * DEPTH.powi(3) / 12.0;
-    let period = TAU / FIRST_MODE * (DENSITY * DEPTH * LENGTH.powi(4) / bending).sqrt();
+    let bending = YOUNG / (1.0 - POISSON * POISSON) * setup.depth.powi(3) / 12.0;
+    let period = TAU / FIRST_MODE * (DENSITY * setup.depth * LENGTH.powi(4) / bending).sqrt();
     let force = setup.factor * bending / LENGTH.powi(2);
-    let until = 2.0 * period;
+    let until = period;
     if setup.load == Load::End {
         let depth = h / f64::from(setup.particles_per_cell);
-        let traction = ramp(until, [0.0, -force / DEPTH, 0.0])?;
+        let traction = ramp(until, [0.0, -force / setup.depth, 0.0])?;
         pull(&mut world, body, (0, 1), (LENGTH, depth), traction)?;
     } else {
-        let gravity = force / (DENSITY * DEPTH * LENGTH);
+        let gravity = force / (DENSITY * setup.depth * LENGTH);
         world.set_gravity_table(Some(ramp(until, [0.0, -gravity, 0.0])?))?;
     }
     let mut out = Outcome::new();
@@ -89,7 +90,7 @@ fn beam(setup: &Setup, h: f64) -> Result<(World, i64)> {
     options.damping = setup.damping;
     let mut world = World::new(&context, &options)?;
     wall(&mut world, WallKind::Sticky, 0, 1, 0.0)?;
-    let region = rectangle([0.0, -0.5 * DEPTH], [LENGTH, 0.5 * DEPTH]);
+    let region = rectangle([0.0, -0.5 * setup.depth], [LENGTH, 0.5 * setup.depth]);
     let body = fill(&mut world, &material, &region, DENSITY, setup.particles_per_cell)?;
     Ok((world, body))
 }
