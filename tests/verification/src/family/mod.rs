@@ -9,6 +9,7 @@ mod discs;
 mod element;
 mod self_weight;
 mod slosh;
+mod specimen;
 mod spin;
 mod tank;
 mod vortex;
@@ -37,6 +38,7 @@ const FAMILIES: &[(&str, Prepare)] = &[
     ("element", |setup| with(setup, element::run)),
     ("self_weight", |setup| with(setup, self_weight::run)),
     ("slosh", |setup| with(setup, slosh::run)),
+    ("specimen", |setup| with(setup, specimen::run)),
     ("spin", |setup| with(setup, spin::run)),
     ("tank", |setup| with(setup, tank::run)),
     ("vortex", |setup| with(setup, vortex::run)),
