@@ -735,6 +735,16 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_body_remove
 
+    function lahar_body_set_f_bar(world, body, on) &
+        bind(c, name="lahar_body_set_f_bar") result(answer)
+      import :: c_int32_t, c_int64_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      integer(c_int64_t), value :: body
+      integer(c_int32_t), value :: on
+      integer(c_int32_t) :: answer
+    end function lahar_body_set_f_bar
+
     function lahar_world_body_count(world, bodies) &
         bind(c, name="lahar_world_body_count") result(answer)
       import :: c_int32_t, c_int64_t, c_ptr
@@ -1189,6 +1199,7 @@ module lahar
   public :: lahar_body_add_sphere
   public :: lahar_body_add_polygon
   public :: lahar_body_remove
+  public :: lahar_body_set_f_bar
   public :: lahar_world_body_count
   public :: lahar_world_bodies
   public :: lahar_body_particle_count
@@ -1280,6 +1291,7 @@ module lahar
     procedure :: add_sphere => world_add_sphere
     procedure :: add_polygon => world_add_polygon
     procedure :: remove_body => world_remove_body
+    procedure :: set_f_bar => world_set_f_bar
     procedure :: body_count => world_body_count
     procedure :: particle_count => world_particle_count
     procedure :: components => world_components
@@ -1698,6 +1710,16 @@ contains
     if (present(body)) body = id(1)
     call finish(status, stat, errmsg)
   end subroutine world_add_polygon
+
+  !> Switches F-bar on or off for a body; off at first.
+  subroutine world_set_f_bar(self, body, on, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: body
+    logical, intent(in) :: on
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_body_set_f_bar(self%handle, body, merge(1_c_int32_t, 0_c_int32_t, on)), stat, errmsg)
+  end subroutine world_set_f_bar
 
   !> Removes a body.
   subroutine world_remove_body(self, body, stat, errmsg)

@@ -888,6 +888,18 @@ lahar_status lahar_body_add_polygon(lahar_world *world,
 // Thread: owner
 lahar_status lahar_body_remove(lahar_world *world, int64_t body);
 
+// Switches F-bar on or off for a body; off at first.
+//
+// With F-bar the particles in a cell of the grid grow and shrink alike (the trace of the velocity gradient is averaged, weighted by
+// volume), so that nearly incompressible and plastic material does not lock. It costs an additional gather per step.
+// `on`: 1 or 0.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY,
+// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Thread: owner
+lahar_status lahar_body_set_f_bar(lahar_world *world,
+                                  int64_t body,
+                                  int32_t on);
+
 // Number of bodies.
 //
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.

@@ -342,6 +342,34 @@ pub unsafe extern "C" fn lahar_body_remove(world: *mut lahar_world, body: i64) -
     })
 }
 
+/// Switches F-bar on or off for a body; off at first.
+///
+/// With F-bar the particles in a cell of the grid grow and shrink alike (the trace of the velocity gradient is averaged, weighted by
+/// volume), so that nearly incompressible and plastic material does not lock. It costs an additional gather per step.
+/// `on`: 1 or 0.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY,
+/// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Thread: owner
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_body_set_f_bar(
+    world: *mut lahar_world,
+    body: i64,
+    on: i32,
+) -> lahar_status {
+    entry("lahar_body_set_f_bar", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.world(world) }?;
+        let on = match on {
+            0 => false,
+            1 => true,
+            other => {
+                return Err(Error::invalid(format!("`on` must be 0 or 1, got {other}")));
+            }
+        };
+        cell.change(Change::Bodies, |w| w.set_f_bar(body, on))
+    })
+}
+
 /// Number of bodies.
 ///
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.

@@ -34,6 +34,8 @@ pub struct Layout {
     pub stress: usize,
     /// Strain energy [J].
     pub strain_energy: usize,
+    /// Rate of growth that F-bar averages [1/s]; none unless the body has F-bar.
+    pub dilation: usize,
     /// Edge lengths of the domain [m], D components; none unless the shape function is sized.
     pub size: usize,
     /// Body force per mass [N/kg], D components; none unless the world has it.
@@ -52,6 +54,8 @@ pub struct Layout {
 /// What a body carries beside what all have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
+    /// Rate of growth.
+    pub dilation: bool,
     /// Edge lengths of the domain.
     pub size: bool,
     /// Body force.
@@ -69,7 +73,7 @@ pub struct Extras {
 impl Layout {
     /// Columns of a body in `dimension` axes.
     pub fn new(dimension: usize, extras: &Extras) -> Self {
-        let Extras { size, body_force, affine, filtered, gradient, state } = *extras;
+        let Extras { dilation, size, body_force, affine, filtered, gradient, state } = *extras;
         let mut end = 0;
         let mut take = |components: usize| {
             end += components;
@@ -82,6 +86,7 @@ impl Layout {
             volume: take(1),
             stress: take(6),
             strain_energy: take(1),
+            dilation: take(usize::from(dilation)),
             size: take(if size { dimension } else { 0 }),
             body_force: take(if body_force { dimension } else { 0 }),
             affine: take(if affine { dimension * dimension } else { 0 }),
@@ -92,6 +97,11 @@ impl Layout {
         };
         layout.end = end;
         layout
+    }
+
+    /// Whether the body has F-bar.
+    pub fn has_dilation(&self) -> bool {
+        self.size > self.dilation
     }
 
     /// Number of columns.

@@ -4,11 +4,13 @@
 //! views, what the stages work on in chunks, and what a sort permutes.
 
 pub mod chunk;
+pub mod dilations;
 pub mod fields;
 pub mod moves;
 pub mod seeding;
 
 pub use chunk::{CHUNK, ChunkMut, Motion, for_each_task};
+pub use dilations::Dilations;
 pub use fields::{Extras, FieldInfo, Layout};
 pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 
@@ -122,6 +124,26 @@ impl Particles {
             layout,
             stride,
         })
+    }
+
+    /// The same particles with other columns: `pairs` of columns from these and in the layout.
+    pub fn with_layout(&self, layout: Layout, pairs: &[(usize, usize)]) -> Result<Self> {
+        let mut new = Self::new(layout, self.len())?;
+        new.id.copy_from_slice(&self.id);
+        new.moved.copy_from_slice(&self.moved);
+        for (from, to) in pairs {
+            new.column_mut(*to).copy_from_slice(self.column(*from));
+        }
+        Ok(new)
+    }
+
+    /// What the averaging of F-bar takes; the body must have it.
+    pub fn dilations<const D: usize>(&mut self) -> Dilations<'_, D> {
+        let (layout, stride, n) = (self.layout, self.stride, self.len());
+        let (before, rates) = self.data.as_mut_slice().split_at_mut(layout.dilation * stride);
+        let column = |c: usize| &before[c * stride..][..n];
+        let position = std::array::from_fn(|d| column(layout.position + d));
+        Dilations::new(position, column(layout.volume), &mut rates[..n])
     }
 
     /// Number of particles.

@@ -29,6 +29,8 @@ pub enum Gather {
     PositionAndGradient,
     /// The gradient alone, from R0 (first gather of USF).
     Gradient,
+    /// The gradient alone, from the second velocities in R1.
+    SecondGradient,
     /// Velocity and position, as [`Gather::Everything`] without the gradient (last gather of USF).
     Motion,
     /// Σ w R1, to be mapped to the grid again by a filter.
@@ -48,7 +50,12 @@ impl Gather {
 
     /// Whether velocity gradients are wanted.
     const fn gradient(self) -> bool {
-        matches!(self, Self::Everything | Self::PositionAndGradient | Self::Gradient)
+        matches!(self, Self::Everything | Self::Gradient) || self.second()
+    }
+
+    /// Whether the gradient is that of R1.
+    const fn second(self) -> bool {
+        matches!(self, Self::PositionAndGradient | Self::SecondGradient)
     }
 }
 
@@ -83,7 +90,7 @@ impl<'a, const D: usize> GatherJob<'a, D> {
     /// The record in the last four lanes of a node: affine transfers take moment and gradient of R0 at once, the others need R1
     /// (FLIP its increment, MUSL its second velocity).
     fn second(&self) -> &'a [Lanes] {
-        if self.transfer.is_affine() && self.what != Gather::PositionAndGradient {
+        if self.transfer.is_affine() && !self.what.second() {
             &self.grid.velocity
         } else {
             &self.grid.increment
@@ -93,7 +100,7 @@ impl<'a, const D: usize> GatherJob<'a, D> {
     /// The first lane of the slopes that hold the velocity gradient.
     #[inline(always)]
     fn gradient_lane(&self) -> usize {
-        if self.transfer.is_affine() || self.what == Gather::PositionAndGradient { 5 } else { 1 }
+        if self.transfer.is_affine() || self.what.second() { 5 } else { 1 }
     }
 }
 

@@ -10,6 +10,7 @@
 //! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
 //! | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
 //! | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
+//! | average the dilation | tr L_p of bodies with F-bar | [`average_dilation`](mod@average_dilation) |
 //! | update the strain | Δε_p, V_p, rotated σ_p | [`update_strain`](mod@update_strain) |
 //! | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
 //!
@@ -17,6 +18,7 @@
 
 pub mod apply_boundaries;
 pub mod apply_tractions;
+pub mod average_dilation;
 pub mod filter_velocities;
 pub mod grid_to_particles;
 pub mod locate;
@@ -30,10 +32,11 @@ pub mod update_stress;
 
 use crate::error::{Error, Result};
 use crate::world::hooks::HookPoint;
-use crate::world::state::State;
+use crate::world::state::{Piece, State};
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
 use apply_tractions::apply_tractions;
+use average_dilation::{average_dilation, share_dilation};
 use filter_velocities::filter_velocities;
 use grid_to_particles::{Gather, grid_to_particles};
 use locate::locate;
@@ -100,10 +103,10 @@ fn move_grid<const D: usize>(world: &mut State<D>, dt: f64) {
 /// doi:10.1016/0045-7825(94)90112-0.
 fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
+    average_dilation(world, Gather::Gradient);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Everything, dt);
-        update_strain(piece, dt);
-        update_stress(piece, dt)
+        strain(piece, dt)
     })
 }
 
@@ -118,10 +121,10 @@ fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     });
     velocities_to_grid(world, Scattered::Momentum);
     apply_boundaries_again(world);
+    average_dilation(world, Gather::SecondGradient);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::PositionAndGradient, dt);
-        update_strain(piece, dt);
-        update_stress(piece, dt)
+        strain(piece, dt)
     })
 }
 
@@ -140,10 +143,10 @@ fn usf<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
 fn usavg<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     let outcome = stress_of_start(world, 0.5 * dt);
     move_grid(world, dt);
+    average_dilation(world, Gather::Gradient);
     outcome.merge(world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Everything, dt);
-        update_strain(piece, 0.5 * dt);
-        update_stress(piece, 0.5 * dt)
+        strain(piece, 0.5 * dt)
     }))
 }
 
@@ -152,9 +155,16 @@ fn stress_of_start<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     particles_to_grid(world);
     update_grid(world, 0.0);
     apply_boundaries(world, dt);
+    average_dilation(world, Gather::Gradient);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Gradient, dt);
-        update_strain(piece, dt);
-        update_stress(piece, dt)
+        strain(piece, dt)
     })
+}
+
+/// From the velocity gradients of a chunk to its stresses.
+fn strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> Outcome {
+    share_dilation(piece);
+    update_strain(piece, dt);
+    update_stress(piece, dt)
 }

@@ -126,6 +126,7 @@ impl<const D: usize> State<D> {
         let Options { shape, transfer, body_force, .. } = self.options;
         let gradient = material.model().kinematics.carries_deformation_gradient();
         Extras {
+            dilation: false,
             size: shape.is_sized(),
             body_force,
             affine: transfer.is_affine(),
@@ -133,6 +134,22 @@ impl<const D: usize> State<D> {
             gradient: gradient || shape == ShapeKind::ContiguousGimp,
             state: material.model().state_components(),
         }
+    }
+
+    /// Switches F-bar on or off for a body.
+    pub fn set_f_bar(&mut self, id: i64, on: bool) -> Result<()> {
+        let at = self.body_position(id)?;
+        let body = &self.bodies[at];
+        if body.has_f_bar() == on {
+            return Ok(());
+        }
+        let (old, extras) = (body.particles.layout, self.extras(&body.material));
+        let new = Layout::new(D, &Extras { dilation: on, ..extras });
+        let before = (0..old.dilation).zip(0..);
+        let pairs: Vec<_> = before.chain((old.size..old.components()).zip(new.size..)).collect();
+        let particles = body.particles.with_layout(new, &pairs)?;
+        self.bodies[at].particles = particles;
+        Ok(())
     }
 
     fn insert(&mut self, mut body: Body) -> Result<()> {

@@ -145,6 +145,12 @@ impl World {
         Ok(())
     }
 
+    /// Switches F-bar on or off for a body (off at first), see [`average_dilation`](mod@crate::step::average_dilation).
+    pub fn set_f_bar(&mut self, body: i64, on: bool) -> Result<()> {
+        self.check_alive()?;
+        on!(&mut self, s => s.set_f_bar(body, on))
+    }
+
     /// Ids of the bodies, ascending.
     pub fn bodies(&self) -> Vec<i64> {
         on!(&self, s => s.bodies.iter().map(|b| b.id).collect())

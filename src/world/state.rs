@@ -114,6 +114,13 @@ pub struct Body {
     pub sizes: Sizes,
 }
 
+impl Body {
+    /// Whether the body has F-bar.
+    pub fn has_f_bar(&self) -> bool {
+        self.particles.layout.has_dilation()
+    }
+}
+
 /// A wall with its id and the force that it put on the material in the last step [N].
 #[derive(Clone, Copy, Debug)]
 pub struct WallEntry {

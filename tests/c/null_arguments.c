@@ -174,6 +174,7 @@ static void body_functions(void) {
   NULL_REFUSED(lahar_body_add_polygon, fill, (world, material, 3, triangle, NULL, &body));
   NULL_REFUSED(lahar_body_add_polygon, body, (world, material, 3, triangle, &fill, NULL));
   NULL_REFUSED(lahar_body_remove, world, (NULL, 0));
+  NULL_REFUSED(lahar_body_set_f_bar, world, (NULL, 0, 1));
   NULL_REFUSED(lahar_world_body_count, world, (NULL, &integer));
   NULL_REFUSED(lahar_world_body_count, bodies, (world, NULL));
   NULL_REFUSED(lahar_world_bodies, world, (NULL, 1, &body, &integer));

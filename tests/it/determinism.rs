@@ -5,7 +5,9 @@ use std::sync::Arc;
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
 use lahar::material::Material;
+use lahar::shape::ShapeKind;
 use lahar::simd::Isa;
+use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::options::Options;
@@ -16,9 +18,9 @@ use crate::setup::{a_box, add_points, context_with, elastic, fill, read, world, 
 fn state_after_a_collision(
     threads: usize,
     isa: Isa,
-    transfer: TransferKind,
+    method: &Options,
     steps: usize,
-    models: [&str; 2],
+    (models, f_bar): ([&str; 2], bool),
 ) -> (Vec<u64>, usize) {
     let context = context_with(threads, isa);
     let elastic = |model: &str, e: f64, nu: f64| {
@@ -27,18 +29,13 @@ fn state_after_a_collision(
     };
     let soft = elastic(models[0], 1e5, 0.3);
     let stiff = elastic(models[1], 4e5, 0.2);
-    let options = Options {
-        dimension: 3,
-        spacing: 0.1,
-        transfer,
-        gravity: [0.0, 0.0, -9.81],
-        ..Options::default()
-    };
+    let options = Options { spacing: 0.1, gravity: [0.0, 0.0, -9.81], ..method.clone() };
     let mut world = world(&context, &options);
     let lower = a_box([0.0, 0.0, 0.05], [1.6, 1.4, 0.55]);
     let upper = a_box([0.2, 0.3, 0.6], [1.4, 1.6, 1.5]);
     fill(&mut world, &soft, &lower, 1000.0, [0.0; 3]);
-    fill(&mut world, &stiff, &upper, 2000.0, [0.5, 0.0, -2.0]);
+    let upper = fill(&mut world, &stiff, &upper, 2000.0, [0.5, 0.0, -2.0]);
+    world.set_f_bar(upper, f_bar).expect("a body");
     let kind = WallKind::Friction;
     world
         .add_wall(&Wall { axis: 2, side: 1, position: 0.05, kind, friction: 0.4 })
@@ -60,13 +57,35 @@ fn state_after_a_collision(
     (bits, context.threads_used())
 }
 
-const RATE: [&str; 2] = ["linear_elastic", "linear_elastic"];
+const RATE: ([&str; 2], bool) = (["linear_elastic", "linear_elastic"], false);
+
+fn with(transfer: TransferKind) -> Options {
+    Options { transfer, ..Options::default() }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits_with_filters_averages_and_every_order() {
+    let f_bar = (RATE.0, true);
+    for (shape, transfer, order) in [
+        (ShapeKind::CubicBspline, TransferKind::Xpic, StepOrder::Usl),
+        (ShapeKind::ContiguousGimp, TransferKind::Fmpm, StepOrder::Usavg),
+        (ShapeKind::QuadraticBspline, TransferKind::Mls, StepOrder::Usf),
+        (ShapeKind::Linear, TransferKind::Tpic, StepOrder::Musl),
+    ] {
+        let method = Options { shape, transfer, order, cfl: 0.2, ..Options::default() };
+        let run = |threads| state_after_a_collision(threads, Isa::best(), &method, 30, f_bar);
+        let (one, two) = (run(1), run(2));
+        assert_eq!(two.1, 2, "the threads worked");
+        assert!(one.0 == two.0, "2 threads give other bits with {method:?}");
+    }
+}
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits_for_models_that_need_the_deformation_gradient() {
-    let models = ["linear_elastic_green_naghdi", "neo_hookean"];
-    let run =
-        |threads| state_after_a_collision(threads, Isa::best(), TransferKind::Apic, 60, models);
+    let models = (["linear_elastic_green_naghdi", "neo_hookean"], false);
+    let run = |threads| {
+        state_after_a_collision(threads, Isa::best(), &with(TransferKind::Apic), 60, models)
+    };
     let (one, two) = (run(1), run(2));
     assert_eq!(two.1, 2, "the threads worked");
     assert!(one.0 == two.0, "2 threads give other bits");
@@ -75,9 +94,10 @@ fn any_number_of_threads_gives_the_same_bits_for_models_that_need_the_deformatio
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for transfer in [TransferKind::PicFlip, TransferKind::Apic] {
-        let (one, _) = state_after_a_collision(1, Isa::best(), transfer, 200, RATE);
+        let (one, _) = state_after_a_collision(1, Isa::best(), &with(transfer), 200, RATE);
         for threads in [2, 3, 8] {
-            let (bits, used) = state_after_a_collision(threads, Isa::best(), transfer, 200, RATE);
+            let (bits, used) =
+                state_after_a_collision(threads, Isa::best(), &with(transfer), 200, RATE);
             assert!(used >= 2, "of {threads} threads only {used} worked");
             assert!(bits == one, "{threads} threads give other bits than one");
         }
@@ -138,8 +158,8 @@ fn it_does_not_matter_what_a_thread_worked_on_before() {
 #[test]
 fn so_it_is_for_every_instruction_set() {
     for isa in Isa::all() {
-        let (one, _) = state_after_a_collision(1, isa, TransferKind::Apic, 50, RATE);
-        let (two, _) = state_after_a_collision(2, isa, TransferKind::Apic, 50, RATE);
+        let (one, _) = state_after_a_collision(1, isa, &with(TransferKind::Apic), 50, RATE);
+        let (two, _) = state_after_a_collision(2, isa, &with(TransferKind::Apic), 50, RATE);
         assert!(one == two, "{isa:?}: two threads give other bits than one");
     }
 }

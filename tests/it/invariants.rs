@@ -186,3 +186,48 @@ fn what_rests_and_carries_no_wave_falls_onto_a_wall_and_not_through_it() {
     let lowest = read(&world, 0, "position").chunks(2).fold(f64::INFINITY, |m, x| m.min(x[1]));
     assert!(lowest > position, "{lowest} is behind the wall at {position}");
 }
+
+#[test]
+fn f_bar_gives_the_particles_with_the_same_lowest_node_one_rate() {
+    for dimension in [2, 3] {
+        for order in StepOrder::ALL {
+            for transfer in [TransferKind::Apic, TransferKind::PicFlip] {
+                let options =
+                    Options { dimension, spacing: 0.1, order, transfer, ..Options::default() };
+                let spread = spread_of_growth(&options, true);
+                assert!(spread <= 1e-12, "{options:?}: {spread:e}");
+                assert!(spread_of_growth(&options, false) > 1e-2, "without it they differ");
+            }
+        }
+    }
+}
+
+/// Largest difference between the growths of two particles with the same lowest node in one step, over the largest growth.
+fn spread_of_growth(options: &Options, f_bar: bool) -> f64 {
+    let context = context(2);
+    let material = elastic(&context, 1e4, 0.3);
+    let mut world = world(&context, options);
+    let body = fill(&mut world, &material, &a_box([0.03; 3], [0.83; 3]), 1000.0, [0.0; 3]);
+    world.set_f_bar(body, f_bar).expect("a body");
+    let d = options.dimension;
+    let x = read(&world, body, "position");
+    let field = |x: &[f64]| [x[0] * x[0] * x[1], (3.0 * x[0]).sin(), x[0] - x[1]];
+    let v: Vec<f64> = x.chunks(d).flat_map(|x| field(x)[..d].to_vec()).collect();
+    write(&mut world, body, "velocity", &v);
+    let v0 = read(&world, body, "volume");
+    world.step(None).expect("a good step");
+    let volumes = read(&world, body, "volume");
+    let growth: Vec<f64> = volumes.iter().zip(&v0).map(|(v, v0)| v / v0 - 1.0).collect();
+    let mut patches = std::collections::BTreeMap::<Vec<i64>, Vec<f64>>::new();
+    for (x, r) in x.chunks(d).zip(&growth) {
+        let lowest = x.iter().map(|x| (x / 0.1 - 0.5).floor() as i64).collect();
+        patches.entry(lowest).or_default().push(*r);
+    }
+    let range = |list: &Vec<f64>| {
+        let fold = |start, f: fn(f64, f64) -> f64| list.iter().copied().fold(start, f);
+        fold(f64::NEG_INFINITY, f64::max) - fold(f64::INFINITY, f64::min)
+    };
+    let largest = growth.iter().fold(0.0, |m, r| f64::max(m, r.abs()));
+    assert!(patches.values().any(|list| list.len() > 2) && largest > 1e-6);
+    patches.values().map(range).fold(0.0, f64::max) / largest
+}
