@@ -11,6 +11,7 @@ mod self_weight;
 mod slosh;
 mod specimen;
 mod spin;
+mod squeeze;
 mod tank;
 mod vortex;
 
@@ -40,6 +41,7 @@ const FAMILIES: &[(&str, Prepare)] = &[
     ("slosh", |setup| with(setup, slosh::run)),
     ("specimen", |setup| with(setup, specimen::run)),
     ("spin", |setup| with(setup, spin::run)),
+    ("squeeze", |setup| with(setup, squeeze::run)),
     ("tank", |setup| with(setup, tank::run)),
     ("vortex", |setup| with(setup, vortex::run)),
 ];
