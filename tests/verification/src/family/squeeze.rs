@@ -67,8 +67,10 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
     out.set("reaction", -force / (HALF_WIDTH * strain * YOUNG));
     let pressure: Vec<f64> = stress.chunks(6).map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
     out.set("noise", noise(&start, &pressure, h));
-    let row = start.iter().zip(&pressure).filter(|(x, _)| x[1] < h / f64::from(setup.particles_per_cell));
-    let mut row: Vec<[f64; 2]> = row.map(|(x, p)| [x[0] / HALF_WIDTH, p / (strain * YOUNG)]).collect();
+    let row =
+        start.iter().zip(&pressure).filter(|(x, _)| x[1] < h / f64::from(setup.particles_per_cell));
+    let mut row: Vec<[f64; 2]> =
+        row.map(|(x, p)| [x[0] / HALF_WIDTH, p / (strain * YOUNG)]).collect();
     row.sort_by(|a, b| a[0].total_cmp(&b[0]));
     out.curve("pressure", row);
     Ok(out)
