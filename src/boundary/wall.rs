@@ -88,7 +88,7 @@ impl Wall {
         let mut out = v;
         match self.kind {
             WallKind::Sticky => return [0.0; D],
-            WallKind::Slip => out[self.axis] = 0.0,
+            WallKind::Slip => out[self.axis] = 0.0, // [BND-1]
             WallKind::Separating | WallKind::Friction => {
                 let approach = -side * v[self.axis];
                 if approach <= 0.0 {
@@ -97,7 +97,7 @@ impl Wall {
                 out[self.axis] = 0.0;
                 if self.kind == WallKind::Friction {
                     let tangential = out.iter().map(|c| c * c).sum::<f64>().sqrt();
-                    let left = (tangential - self.friction * approach).max(0.0);
+                    let left = (tangential - self.friction * approach).max(0.0); // [BND-2]
                     if tangential > 0.0 {
                         out = out.map(|c| c * (left / tangential));
                     }

@@ -5,6 +5,7 @@
 pub mod cubic_bspline;
 pub mod gimp;
 pub mod linear;
+pub mod mls;
 pub mod modified;
 pub mod quadratic_bspline;
 pub mod stencil;

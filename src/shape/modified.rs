@@ -3,8 +3,8 @@
 //!
 //! With the wall on node 0 and the material above, a field continues linearly to the node behind, v₋₁ = 2 v₀ − v₁; hence
 //! w₀ ← w₀ + 2 w₋₁, w₁ ← w₁ − w₋₁, and the same with the slopes. Both weights are positive. It is the natural spline: what holds on the wall is
-//! the condition on v₀, and nothing else. The idea of functions modified at the boundary is that of M. Steffen, P. C. Wallstedt, J. E. Guilkey,
-//! R. M. Kirby, M. Berzins, CMES 31 (2008) 107–127, doi:10.3970/cmes.2008.031.107, who take open knot vectors instead.
+//! the condition on v₀, and nothing else. The idea of functions modified at the boundary is that of M. Steffen, R. M. Kirby, M. Berzins,
+//! Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360, who build the first functions on knots that end at the wall instead.
 
 use std::marker::PhantomData;
 

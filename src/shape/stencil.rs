@@ -75,7 +75,7 @@ impl<const N: usize, const D: usize> Stencil<f64, N, D> {
             let w = |d: usize| self.axes[d].w[place(d)];
             let slope = |d: usize, e: usize| if d == e { self.axes[e].dw[place(e)] } else { w(e) };
             let dw = std::array::from_fn(|d| (0..D).map(|e| slope(d, e)).product());
-            visit(index, (0..D).map(w).product(), dw);
+            visit(index, (0..D).map(w).product(), dw); // [SHP-7]
         }
     }
 }

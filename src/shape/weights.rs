@@ -33,10 +33,9 @@ impl<const N: usize, const D: usize> Weights<N, D> {
         high: [[[0.0; LANES]; N]; D],
     };
 
-    /// c_n = [r_n w_n; w'_n] with the distance r_n = x_n − x_p in units of the spacing, [w'_n; w'_n] if not `moments`. With the inverse of
-    /// Σ w r² in `mls` the slopes are those of moving least squares, r_n w_n / Σ w r².
+    /// c_n = [r_n w_n; w'_n] with the distance r_n = x_n − x_p in units of the spacing, or [w'_n; w'_n] if not `moments`.
     #[inline(always)]
-    pub fn set<V: Vector>(&mut self, stencil: &Stencil<V, N, D>, moments: bool, mls: Option<f64>) {
+    pub fn set<V: Vector>(&mut self, stencil: &Stencil<V, N, D>, moments: bool) {
         for d in 0..D {
             let axis = &stencil.axes[d];
             for n in 0..N {
@@ -44,13 +43,9 @@ impl<const N: usize, const D: usize> Weights<N, D> {
                     continue;
                 }
                 axis.w[n].store(&mut self.w[d][n]);
-                let moment = (V::splat(n as f64) - axis.fraction) * axis.w[n];
-                let slope = match mls {
-                    Some(inverse) => moment * V::splat(inverse), // [TRF-5]
-                    None => axis.dw[n],
-                };
-                slope.store(&mut self.high[d][n]);
-                let low = if moments { moment } else { slope };
+                axis.dw[n].store(&mut self.high[d][n]);
+                let r = V::splat(n as f64) - axis.fraction;
+                let low = if moments { r * axis.w[n] } else { axis.dw[n] };
                 low.store(&mut self.low[d][n]);
             }
         }
@@ -86,7 +81,7 @@ impl<V: Vector, const N: usize, const D: usize> Axes<V, N, D> {
         let mut nodes = [value; N];
         for n in 0..N {
             if rest(N) != Some(n) {
-                nodes[n] = self.w[d][n].mul_add(value, self.c[d][n] * column);
+                nodes[n] = self.w[d][n].mul_add(value, self.c[d][n] * column); // [SHP-7]
             }
         }
         Self::with_rest(nodes)
@@ -139,7 +134,7 @@ impl<V: Vector, const N: usize, const D: usize> Axes<V, N, D> {
                 None => nodes[n],
             };
             sum = self.w[d][n].mul_add(node, sum);
-            slope = self.c[d][n].mul_add(node, slope);
+            slope = self.c[d][n].mul_add(node, slope); // [SHP-7]
         }
         (sum, slope)
     }

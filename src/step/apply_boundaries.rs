@@ -35,12 +35,13 @@ fn apply_walls<const D: usize>(world: &mut State<D>, dt: f64) {
             for_reached_nodes(&entry.wall, space, key, |n| {
                 let mass = r0[n][0];
                 let change = constrain::<D>(&entry.wall, &mut r0[n]);
-                for a in 0..D {
-                    let held = change[a] != 0.0 && r0[n][a + 1] == 0.0;
-                    if damped && held {
+                if damped {
+                    for a in (0..D).filter(|a| change[*a] != 0.0 && r0[n][a + 1] == 0.0) {
                         let whole = dt * (force[n][a + 1] + mass * gravity[a]);
-                        impulse[a] -= whole - mass * r1[n][a + 1];
+                        impulse[a] -= whole - mass * r1[n][a + 1]; // [BND-4]
                     }
+                }
+                for a in 0..D {
                     r1[n][a + 1] += change[a];
                     impulse[a] += mass * change[a];
                 }
@@ -56,7 +57,7 @@ fn apply_walls<const D: usize>(world: &mut State<D>, dt: f64) {
                 total[a] += impulse[a];
             }
         }
-        entry.reaction = total.map(|impulse| impulse / dt);
+        entry.reaction = total.map(|impulse| impulse / dt); // [BND-4]
     }
 }
 
@@ -113,7 +114,7 @@ pub fn for_reached_nodes<const D: usize>(
 /// Layers of nodes of block `key`, along the wall's axis, that the wall reaches.
 fn reached_layers<const D: usize>(wall: &Wall, space: &Space<D>, key: &Key<D>) -> Range<usize> {
     let at = (wall.position - space.origin[wall.axis]) / space.spacing;
-    let reach = space.wall_reach + ROUND_OFF;
+    let reach = space.wall_reach + ROUND_OFF; // [BND-3]
     let lowest = f64::from(key[wall.axis]) * EDGE as f64;
     let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
     if wall.side > 0 {

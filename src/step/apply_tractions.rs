@@ -33,8 +33,11 @@ pub fn apply_tractions<const D: usize>(world: &mut State<D>, dt: f64) {
             face[load.axis] += 0.5 * f64::from(load.side) * volume / section; // [CND-4]
             let force = traction.map(|t| t * area);
             // a face that has left the nodes of the body behind: its particle's own nodes have mass
-            let near_face = spread(kernels, grid, space.at(face, [0.0; D]), force, &mut forces);
-            if near_face || spread(kernels, grid, space.at(center, [0.0; D]), force, &mut forces) {
+            let near_face =
+                spread(kernels, grid, space.at_point(face, [0.0; D]), force, &mut forces);
+            if near_face
+                || spread(kernels, grid, space.at_point(center, [0.0; D]), force, &mut forces)
+            {
                 (0..D).for_each(|a| total[a] += force[a]);
             }
         }

@@ -93,7 +93,7 @@ fn average_run<const D: usize>(
     let lowest = key.map(|k| f64::from(k) * EDGE as f64);
     let mut sums = [[0.0; 2]; PATCHES];
     let patch = |x: [f64; D]| {
-        let xi = space.to_units(x);
+        let xi = space.between_walls(x);
         (0..D).fold(0, |patch, d| {
             let place = (xi[d] - space.first_offset).floor() - lowest[d];
             patch * EDGE + place.clamp(0.0, (EDGE - 1) as f64) as usize

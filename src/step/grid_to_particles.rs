@@ -15,7 +15,7 @@ use crate::shape::modified::is_modified;
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each};
-use crate::transfer::{Received, TransferKind, apic, pic_flip, tpic};
+use crate::transfer::{Received, TransferKind, apic, pic_flip};
 use crate::world::state::{ChunkStage, Piece, Space};
 
 /// What a gather updates.
@@ -246,9 +246,8 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             if S::SIZED {
                 size = each!(d in D => V::load(&motion.other(job.size + d)[k..end]));
             }
-            let stencil = Stencil::<V, N, D>::new::<S>(job.space.at(x, size));
-            let mls = if job.transfer == TransferKind::Mls { S::MOMENT } else { None };
-            self.weights[g].set(&stencil, job.transfer.is_affine(), mls.map(f64::recip));
+            let stencil = job.space.stencil::<V, S, N>(x, size);
+            self.weights[g].set(&stencil, job.transfer.is_affine());
             self.corners[g] = corners(&stencil, key);
         }
     }
@@ -285,17 +284,20 @@ impl<V: Vector, const D: usize> Taken<V, D> {
     #[inline(always)]
     fn received(&self, job: &GatherJob<'_, D>, g: usize) -> Received<V, D> {
         let sums = V::transpose(self.sums[g]);
-        let mut slopes = self.slopes[g];
-        for d in 0..D {
-            slopes[d] = V::transpose(slopes[d]);
+        let mut slopes = [V::transpose(self.slopes[g][0]); D];
+        for d in 1..D {
+            slopes[d] = V::transpose(self.slopes[g][d]);
         }
         let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
-        let first = job.gradient_lane();
+        let second = job.gradient_lane() == 5;
         Received {
             velocity: each!(a in D => sums[1 + a]),
             increment: each!(a in D => sums[5 + a]),
             moment: each!(a in D, b in D => slopes[b][1 + a] * h),
-            gradient: each!(a in D, b in D => slopes[b][first + a] * inverse),
+            gradient: each!(a in D, b in D => {
+                let (low, high) = (slopes[b][1 + a], slopes[b][5 + a]);
+                (if second { high } else { low }) * inverse // [G2P-1]
+            }),
         }
     }
 }
@@ -311,23 +313,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
 ) -> u8 {
     let old = each!(a in D => V::load(&motion.position[a][k..end]));
     if job.what.velocity() {
-        let mut v = received.velocity; // [TRF-1]
-        if job.transfer.is_affine() {
-            let c = affine::<V, S, N, D>(job, old, received);
-            for a in 0..D {
-                for b in 0..D {
-                    c[a][b].store(&mut motion.affine[a][b][k..end]);
-                }
-            }
-        } else if job.transfer.is_filtered() {
-            v = received.increment; // [TRF-6]
-        } else {
-            let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
-            v = pic_flip::velocity(old, received, job.pic_share);
-        }
-        for a in 0..D {
-            v[a].store(&mut motion.velocity[a][k..end]);
-        }
+        keep_velocity::<V, S, N, D>(job, old, received, motion, (k, end));
     }
     if job.what.gradient() {
         for a in 0..D {
@@ -336,9 +322,12 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
             }
         }
         if job.axisymmetric {
-            let of_r1 = job.gradient_lane() == 5;
-            let v = if of_r1 { received.increment[0] } else { received.velocity[0] };
-            (v / old[0]).store(&mut gradient.hoop[k..end]); // [AXI-2]
+            let inverse = V::splat(1.0) / old[0];
+            if job.gradient_lane() == 5 {
+                (received.increment[0] * inverse).store(&mut gradient.hoop[k..end]);
+            } else {
+                (received.velocity[0] * inverse).store(&mut gradient.hoop[k..end]); // [AXI-2]
+            }
         }
     }
     if job.what == Gather::Filter {
@@ -353,36 +342,66 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     for a in 0..D {
         x[a].store(&mut motion.position[a][k..end]);
     }
-    outside(job, key, x, end - k)
+    outside::<V, S, N, D>(job, key, x, end - k)
 }
 
-/// Affine matrices of eight particles at `x`.
+/// Keeps the velocities, and affine matrices, of eight particles at `x`. (Each scheme stores for itself: a choice between values in memory
+/// would keep the compiler from holding them in registers.)
 #[inline(always)]
-fn affine<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+fn keep_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     x: [V; D],
     received: &Received<V, D>,
-) -> [[V; D]; D] {
-    if job.transfer == TransferKind::Tpic {
-        return tpic::affine(received);
+    motion: &mut Motion<'_, D>,
+    (k, end): (usize, usize),
+) {
+    if job.transfer.is_affine() {
+        for a in 0..D {
+            received.velocity[a].store(&mut motion.velocity[a][k..end]); // [TRF-1]
+        }
+        if job.transfer == TransferKind::Tpic {
+            for a in 0..D {
+                for b in 0..D {
+                    received.gradient[a][b].store(&mut motion.affine[a][b][k..end]); // [TRF-4]
+                }
+            }
+            return;
+        }
+        let mut modified = None;
+        if S::MODIFIED {
+            let (xi, walls) = (job.space.between_walls(x), &job.space.walls);
+            modified = Some(each!(d in D => {
+                is_modified::<V, S, N>(xi[d], [V::splat(walls[d][0]), V::splat(walls[d][1])])
+            }));
+        }
+        let c = apic::affine(received, S::MOMENT, job.space.spacing, modified);
+        for a in 0..D {
+            for b in 0..D {
+                c[a][b].store(&mut motion.affine[a][b][k..end]);
+            }
+        }
+    } else if job.transfer.is_filtered() {
+        for a in 0..D {
+            received.increment[a].store(&mut motion.velocity[a][k..end]); // [TRF-6]
+        }
+    } else {
+        let old = each!(a in D => V::load(&motion.velocity[a][k..end]));
+        let v = pic_flip::velocity(old, received, job.pic_share);
+        for a in 0..D {
+            v[a].store(&mut motion.velocity[a][k..end]);
+        }
     }
-    let mut modified = None;
-    if S::MODIFIED {
-        let (xi, walls) = (job.space.to_units(x), &job.space.walls);
-        modified = Some(each!(d in D => is_modified::<V, S, N>(xi[d], walls[d].map(V::splat))));
-    }
-    apic::affine(received, S::MOMENT, job.space.spacing, modified)
 }
 
 /// Bit l is set if particle l of `count` is not in the block of its run any more.
 #[inline(always)]
-fn outside<V: Vector, const D: usize>(
+fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     key: Key<D>,
     x: [V; D],
     count: usize,
 ) -> u8 {
-    let xi = job.space.to_units(x);
+    let xi = if S::MODIFIED { job.space.between_walls(x) } else { job.space.to_units(x) };
     let mut inside = u8::MAX;
     for d in 0..D {
         let place = xi[d] - V::splat(job.space.first_offset);

@@ -140,7 +140,7 @@ fn carry_out<const D: usize>(world: &mut State<D>, plan: &mut Plan<D>) -> Result
 /// Block of a particle and the number of its cell in the block; None if it is too far away or not finite.
 #[inline(always)]
 fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)> {
-    let xi = space.to_units(x);
+    let xi = space.between_walls(x);
     let mut key = [0; D];
     let mut cell = 0;
     for d in 0..D {

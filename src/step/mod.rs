@@ -79,10 +79,10 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
     locate(world)?;
     world.hook(HookPoint::Start, dt);
     let outcome = match world.options.order {
-        StepOrder::Usl => usl(world, dt),
-        StepOrder::Musl => musl(world, dt),
-        StepOrder::Usf => usf(world, dt),
-        StepOrder::Usavg => usavg(world, dt),
+        StepOrder::Usl => usl(world, dt),     // [ORD-1]
+        StepOrder::Musl => musl(world, dt),   // [ORD-2]
+        StepOrder::Usf => usf(world, dt),     // [ORD-3]
+        StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
     outcome.limits()

@@ -6,8 +6,8 @@ use crate::shape::ShapeKind;
 use crate::step::StepOrder;
 use crate::transfer::{TransferKind, filter, pic_flip::pic_share};
 use nodes::{
-    DV, F, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, gather, moment, near,
-    reaches_behind_wall, scatter, strain, walled,
+    DV, F, Grid, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, gather, moment,
+    near, reaches_behind_wall, scatter, strain, walled,
 };
 
 /// One step of length `dt` [s]; `update` gets each particle with its velocity gradient [1/s] and the time over which it holds.
@@ -41,23 +41,8 @@ pub fn step<const D: usize>(
         n.1[V] = walled(s, i, old + dt * (a - damping));
         n.1[DV] = n.1[V] - old;
     }
-    let (xpic, filtered) = (o.transfer == TransferKind::Xpic, o.transfer.is_filtered());
-    for n in grid.values_mut().filter(|_| filtered) {
-        n.1[LAST] =
-            f64::from(o.filter_order) * (n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() });
-        n.1[U] = n.1[LAST] + if xpic { n.1[DV] } else { Vector::zeros() };
-    }
-    for l in 2..=o.filter_order * i32::from(filtered) {
-        let v = gather(s, particles, &grid, LAST);
-        let again = scatter(s, particles, |k, _| v[k]);
-        for (i, n) in &mut grid {
-            n.1[LAST] = filter::factor(o.filter_order, l) * again[i].1[MV] / n.0;
-            n.1[U] += n.1[LAST];
-        }
-    }
-    for (i, n) in grid.iter_mut().filter(|_| filtered) {
-        n.1[U] = walled(s, i, n.1[U]);
-        n.1[V] = if xpic { n.1[V] } else { n.1[U] };
+    if o.transfer.is_filtered() {
+        filter_grid(s, particles, &mut grid);
     }
     let [pic, flip, u] = [V, DV, U].map(|field| gather(s, particles, &grid, field));
     let share = pic_share(o.pic_rate, dt);
@@ -89,5 +74,27 @@ pub fn step<const D: usize>(
         StepOrder::Usf => particles.iter_mut().zip(&x).for_each(|(p, x)| p.x = *x),
         StepOrder::Musl => strain(s, particles, &x, (&grid, LAST), dt, update),
         _ => strain(s, particles, &x, (&grid, V), (1.0 - first) * dt, update),
+    }
+}
+
+/// The velocities that particles take in XPIC and FMPM; in the latter they are those of the grid too.
+fn filter_grid<const D: usize>(s: Setup<'_>, particles: &[Particle<D>], grid: &mut Grid<D>) {
+    let (m, xpic) = (s.0.filter_order, s.0.transfer == TransferKind::Xpic);
+    for n in grid.values_mut() {
+        let change = if xpic { n.1[DV] } else { Vector::zeros() };
+        n.1[LAST] = f64::from(m) * (n.1[V] - change);
+        n.1[U] = n.1[LAST] + change;
+    }
+    for l in 2..=m {
+        let v = gather(s, particles, grid, LAST);
+        let again = scatter(s, particles, |k, _| v[k]);
+        for (i, n) in grid.iter_mut() {
+            n.1[LAST] = filter::factor(m, l) * again[i].1[MV] / n.0;
+            n.1[U] += n.1[LAST];
+        }
+    }
+    for (i, n) in grid {
+        n.1[U] = walled(s, i, n.1[U]);
+        n.1[V] = if xpic { n.1[V] } else { n.1[U] };
     }
 }

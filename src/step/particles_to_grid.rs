@@ -17,11 +17,10 @@ use crate::grid::key::block_nodes;
 use crate::grid::tiles::{TileNode, Tiles, shared_rows};
 use crate::grid::{EDGE, Key, Lanes, Run};
 use crate::particles::Particles;
-use crate::shape::stencil::{ShapeFunction, Stencil};
+use crate::shape::stencil::ShapeFunction;
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
-use crate::transfer::TransferKind;
 use crate::world::state::{Body, Space, State};
 
 /// What a scatter needs beside the tiles that it fills.
@@ -41,8 +40,6 @@ pub struct ScatterJob<'a, const D: usize> {
     pub tiles: &'a [(u32, u32)],
     /// What to map.
     pub what: Scattered,
-    /// The inverse of Σ w r² in units of h², if forces take the form of moving least squares.
-    pub mls: bool,
     /// Whether x is a radius, and hoop stresses push along it.
     pub axisymmetric: bool,
 }
@@ -107,7 +104,6 @@ fn scatter<const D: usize>(world: &mut State<D>, what: Scattered) {
             runs: &tiles.runs,
             tiles: &tiles.tiles[first..first + part.len() / nodes],
             what,
-            mls: options.transfer == TransferKind::Mls,
             axisymmetric: options.axisymmetric,
         };
         kernel(&job, part);
@@ -285,11 +281,10 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
         if S::SIZED {
             size = each!(d in D => V::load(&columns.size[d][k..k + LANES]));
         }
-        let stencil = Stencil::<V, N, D>::new::<S>(job.space.at(x, size));
-        let mls = if job.mls { S::MOMENT } else { None };
-        self.weights[g].set(&stencil, true, mls.map(f64::recip));
+        let stencil = job.space.stencil::<V, S, N>(x, size);
+        self.weights[g].set(&stencil, true);
         self.corners[g] = corners(&stencil, key);
-        (self.values[g], self.columns[g]) = payload(job, columns, x[0], k);
+        payload(job, columns, (x[0], k), (&mut self.values[g], &mut self.columns[g]));
     }
 
     /// Adds what the first `count` particles give to the tile.
@@ -368,48 +363,66 @@ impl<'a, const D: usize> Columns<'a, D> {
 fn payload<V: Vector, const D: usize>(
     job: &ScatterJob<'_, D>,
     columns: &Columns<'_, D>,
-    radius: V,
-    k: usize,
-) -> ([V; LANES], [[V; LANES]; D]) {
+    (radius, k): (V, usize),
+    (values, of_axes): (&mut [V; LANES], &mut [[V; LANES]; D]),
+) {
     let zero = V::splat(0.0);
     let mass = V::load(&columns.mass[k..k + LANES]);
     let mut value = [zero; LANES];
-    value[0] = mass;
+    value[0] = mass; // [P2G-1]
     for a in 0..D {
-        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]);
+        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]); // [P2G-2]
+    }
+    let whole = job.what == Scattered::Everything;
+    if whole && (job.axisymmetric || columns.body_force.is_some()) {
+        let mut value = value;
+        add_forces(job, columns, radius, k, &mut value);
+        *values = V::transpose(value);
+    } else {
+        *values = V::transpose(value); // three of its rows are zero
     }
     let mut slopes = [[zero; LANES]; D];
     if let Some(affine) = &columns.affine {
         let mh = mass * V::splat(job.space.spacing);
         for d in 0..D {
             for a in 0..D {
-                slopes[d][1 + a] = mh * V::load(&affine[a][d][k..k + LANES]);
+                slopes[d][1 + a] = mh * V::load(&affine[a][d][k..k + LANES]); // [P2G-2]
             }
         }
     }
-    if let Some(force) = &columns.body_force {
-        for a in 0..D {
-            value[5 + a] = mass * V::load(&force[a][k..k + LANES]); // [P2G-4]
-        }
-    }
-    if job.what == Scattered::Everything {
-        let volume = V::load(&columns.volume[k..k + LANES]);
-        if job.axisymmetric {
-            let hoop = V::load(&columns.stress[2][k..k + LANES]);
-            value[5] = value[5] - volume * hoop / radius; // [AXI-1]
-        }
-        let scale = volume * V::splat(-job.space.inverse);
+    if whole {
+        let scale = V::load(&columns.volume[k..k + LANES]) * V::splat(-job.space.inverse);
         for d in 0..D {
             for a in 0..D {
                 let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];
-                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]);
+                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]); // [P2G-3]
             }
         }
     }
     for d in 0..D {
-        slopes[d] = V::transpose(slopes[d]);
+        of_axes[d] = V::transpose(slopes[d]);
     }
-    (V::transpose(value), slopes)
+}
+
+/// Adds the forces at the particles themselves to the values of eight: body forces, and in axial symmetry that of the hoop stress.
+#[inline(always)]
+fn add_forces<V: Vector, const D: usize>(
+    job: &ScatterJob<'_, D>,
+    columns: &Columns<'_, D>,
+    radius: V,
+    k: usize,
+    value: &mut [V; LANES],
+) {
+    if let Some(force) = &columns.body_force {
+        for a in 0..D {
+            value[5 + a] = value[0] * V::load(&force[a][k..k + LANES]); // [P2G-4]
+        }
+    }
+    if job.axisymmetric {
+        let volume = V::load(&columns.volume[k..k + LANES]);
+        let hoop = V::load(&columns.stress[2][k..k + LANES]);
+        value[5] = value[5] - volume * hoop / radius; // [AXI-1]
+    }
 }
 
 /// Adds what a particle gives to the nodes of its stencil.

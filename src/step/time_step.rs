@@ -42,8 +42,8 @@ impl Limits {
     /// The stable time step [s] with gravity `g` [m/s²]; infinity if nothing moves, pulls or resists.
     pub fn stable_dt(&self, options: &Options, g: f64) -> f64 {
         let (h, s) = (options.spacing, self.speed);
-        let wave = 2.0 * options.cfl * h / (s + (s * s + 4.0 * g * options.cfl * h).sqrt());
-        let viscous = options.cfl * h * h / (2.0 * options.dimension as f64 * self.diffusivity);
+        let wave = 2.0 * options.cfl * h / (s + (s * s + 4.0 * g * options.cfl * h).sqrt()); // [CFL-1]
+        let viscous = options.cfl * h * h / (2.0 * options.dimension as f64 * self.diffusivity); // [CFL-2]
         wave.min(viscous).min(self.wanted_dt)
     }
 }
@@ -121,4 +121,27 @@ fn limits_of_chunk<const D: usize>(
 /// The larger of two numbers, not a number if one of them is.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stable_step_is_the_longest_that_obeys_both_bounds() {
+        for dimension in [2, 3] {
+            let options = Options { dimension, spacing: 0.2, cfl: 0.4, ..Options::default() };
+            for (speed, g) in [(30.0, 0.0), (30.0, 9.81), (0.0, 9.81), (1e-3, 1e4)] {
+                let limits = Limits { speed, ..Limits::default() };
+                let dt = limits.stable_dt(&options, g);
+                let way = (speed + g * dt) * dt; // [CFL-1] holds as an equation
+                assert!((way / (0.4 * 0.2) - 1.0).abs() < 1e-14, "{speed} m/s, {g} m/s²: {way} m");
+            }
+            let limits = Limits { diffusivity: 3.0, ..Limits::default() };
+            let (dt, axes) = (limits.stable_dt(&options, 0.0), dimension as f64);
+            assert!((dt * 2.0 * axes * 3.0 / (0.4 * 0.04) - 1.0).abs() < 1e-14, "{dt} s");
+            let both = Limits { speed: 30.0, diffusivity: 3.0, wanted_dt: 1e-4 };
+            assert_eq!(both.stable_dt(&options, 0.0), 1e-4);
+        }
+    }
 }

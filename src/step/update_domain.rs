@@ -1,8 +1,8 @@
 //! Stage 6a, domains of contiguous-particle GIMP: edges follow the diagonal of the stretch U in F = R U.
 //!
-//! T. J. Charlton, W. M. Coombs, C. E. Augarde, Comput. Struct. 190 (2017) 108–125, doi:10.1016/j.compstruc.2017.05.004; the diagonal of U, which a
-//! rotation leaves alone, is the choice of W. M. Coombs, C. E. Augarde, M. Cortis et al., Comput. Methods Appl. Mech. Engrg. 358 (2020) 112622,
-//! doi:10.1016/j.cma.2019.112622.
+//! T. J. Charlton, W. M. Coombs, C. E. Augarde, Comput. Struct. 190 (2017) 108–125, doi:10.1016/j.compstruc.2017.05.004; a rotation leaves the
+//! diagonal of U alone, unlike that of F. How it compares with other choices: W. M. Coombs, C. E. Augarde, A. J. Brennan et al., Comput. Methods
+//! Appl. Mech. Engrg. 358 (2020) 112622, doi:10.1016/j.cma.2019.112622.
 
 use super::update_strain::{deformation_gradient, deformed, gradient};
 use crate::simd::{Kernel, LANES, Vector};

@@ -63,11 +63,11 @@ impl Kernel for Update<'_> {
             if self.damping > 0.0 {
                 let sign = before / before.abs().max(V::splat(f64::MIN_POSITIVE));
                 let resistance = V::splat(self.damping) * acceleration.abs() * sign;
-                acceleration = acceleration - resistance;
+                acceleration = acceleration - resistance; // [GRD-2]
             }
             let change = acceleration * dt;
             change.store(r1);
-            (before + change).store(r0);
+            (before + change).store(r0); // [GRD-1]
             (r0[0], r0[4]) = (m, n);
         }
     }

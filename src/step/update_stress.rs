@@ -103,10 +103,10 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
             }
             let volume = V::load(&chunk.column(layout.volume)[k..end]);
             let energy = if s.energy.is_empty() {
-                let change = work * volume * (V::splat(1.0) - V::splat(0.5) * trace);
+                let change = work * volume * (V::splat(1.0) - V::splat(0.5) * trace); // [STS-1]
                 V::load(&chunk.column(layout.strain_energy)[k..end]) + change
             } else {
-                V::load(&s.energy[k..end]) * volume
+                V::load(&s.energy[k..end]) * volume // [STS-2]
             };
             energy.store(&mut chunk.column_mut(layout.strain_energy)[k..end]);
             let mut square = zero;

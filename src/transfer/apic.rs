@@ -4,6 +4,9 @@
 //! splines D = h²/4, for cubic ones h²/3; for linear shapes D is singular at nodes and C = Σ v ⊗ ∇w is taken instead, and so it is,
 //! along the axis in question, where a wall modifies the weights.
 //!
+//! Taylor particle-in-cell (TPIC) takes C = Σ v ⊗ ∇w always: K. Nakamura, S. Matsumura, T. Mizutani, Comput. Methods Appl. Mech. Engrg. 403 (2023)
+//! 115720, doi:10.1016/j.cma.2022.115720.
+//!
 //! The moving-least-squares form takes C for the velocity gradient too, and forces −Σ V σ D⁻¹ r w: Y. Hu, Y. Fang, Z. Ge, Z. Qu, Y. Zhu,
 //! A. Pradhana, C. Jiang, ACM Trans. Graph. 37 (2018) 150, doi:10.1145/3197517.3201293.
 

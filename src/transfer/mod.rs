@@ -5,7 +5,6 @@
 pub mod apic;
 pub mod filter;
 pub mod pic_flip;
-pub mod tpic;
 
 use crate::error::{Error, Result};
 
@@ -17,7 +16,7 @@ pub enum TransferKind {
     PicFlip = 0,
     /// Affine particle-in-cell, see [`apic`].
     Apic = 1,
-    /// Taylor particle-in-cell, see [`tpic`].
+    /// Taylor particle-in-cell, see [`apic`].
     Tpic = 2,
     /// Affine particle-in-cell with the forces and gradients of moving least squares, see [`apic`].
     Mls = 3,

@@ -9,7 +9,7 @@ use crate::simd::{Real, each};
 
 /// Share of PIC in a step of `dt` [s] at the rate `pic_rate` [1/s].
 pub fn pic_share(pic_rate: f64, dt: f64) -> f64 {
-    -(-pic_rate * dt).exp_m1()
+    -(-pic_rate * dt).exp_m1() // [TRF-8]
 }
 
 /// New velocity of a particle that had `v`.
@@ -20,7 +20,7 @@ pub fn velocity<R: Real, const D: usize>(
     pic_share: f64,
 ) -> [R; D] {
     let (pic, flip) = (R::splat(pic_share), R::splat(1.0 - pic_share));
-    each!(a in D => flip * (v[a] + received.increment[a]) + pic * received.velocity[a])
+    each!(a in D => flip * (v[a] + received.increment[a]) + pic * received.velocity[a]) // [TRF-2]
 }
 
 #[cfg(test)]

@@ -94,7 +94,7 @@ impl<const D: usize> State<D> {
         let (mut of_each, mut whole) = (Vec::new(), area * n as f64);
         if self.options.axisymmetric {
             reserve(&mut of_each, n, "the volumes of particles")?;
-            of_each.extend(points.iter().map(|x| x[0] * area)); // per radian
+            of_each.extend(points.iter().map(|x| x[0] * area)); // [AXI-3]
             whole = of_each.iter().sum();
         }
         let density = if given.0 { how.density } else { how.mass / whole };

@@ -4,12 +4,15 @@ use crate::grid::Grid;
 use crate::shape::cubic_bspline::CubicBspline;
 use crate::shape::gimp::Gimp;
 use crate::shape::linear::Linear;
+use crate::shape::mls::Mls;
 use crate::shape::modified::Modified;
 use crate::shape::quadratic_bspline::QuadraticBspline;
 use crate::shape::stencil::{At, ShapeFunction};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_chunk};
 use crate::step::particles_to_grid::{Scatter, scatter_tiles};
+use crate::transfer::TransferKind;
+use crate::world::options::Options;
 
 /// Calls the visitor with number and weight of every node of the stencil of a place; false if a node's block is not active.
 pub type NodesAt<const D: usize> = fn(&Grid<D>, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;
@@ -28,10 +31,16 @@ pub struct Kernels<const D: usize> {
 }
 
 impl<const D: usize> Kernels<D> {
-    /// The kernels of a shape function. Linear ones have nothing to modify next to a wall on a node plane.
-    pub fn new(shape: ShapeKind, walls: WallTreatment) -> Self {
+    /// The kernels of checked options. Linear shape functions have nothing to modify next to a wall on a node plane.
+    pub fn new(options: &Options) -> Self {
         use {ShapeKind as S, WallTreatment as W};
-        match (shape, walls) {
+        match (options.shape, options.wall_treatment) {
+            (S::QuadraticBspline, _) if options.transfer == TransferKind::Mls => {
+                Self::of::<Mls<QuadraticBspline>, 3>()
+            }
+            (S::CubicBspline, _) if options.transfer == TransferKind::Mls => {
+                Self::of::<Mls<CubicBspline>, 4>()
+            }
             (S::Linear, _) => Self::of::<Linear, 2>(),
             (S::QuadraticBspline, W::Plain) => Self::of::<QuadraticBspline, 3>(),
             (S::QuadraticBspline, W::Modified) => Self::of::<Modified<QuadraticBspline>, 3>(),

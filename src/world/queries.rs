@@ -93,12 +93,12 @@ impl<const D: usize> State<D> {
         let h2 = self.options.spacing.powi(2);
         let sized = layout.body_force > layout.size;
         let size = if sized { p.get::<D>(layout.size, k) } else { [0.0; D] };
-        let at = self.space().at(p.get::<D>(layout.position, k), size);
+        let at = self.space().at_point(p.get::<D>(layout.position, k), size);
         let moment = at.map(|at| h2 * (self.kernels.moment)(at));
         let c = |a: usize, b: usize| p.column(layout.affine + a * D + b)[k] * moment[b];
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if a < D && b < D {
-                spin[axis] = c(b, a) - c(a, b);
+                spin[axis] = c(b, a) - c(a, b); // [TRF-9]
             }
         }
         spin
@@ -148,7 +148,7 @@ impl<const D: usize> State<D> {
             return Err(Error::invalid(format!("points must be finite [m], got {point:?}")));
         }
         out.fill(0.0);
-        let at = self.space().at(std::array::from_fn(|d| point[d]), [0.0; D]);
+        let at = self.space().at_point(std::array::from_fn(|d| point[d]), [0.0; D]);
         if at.iter().any(|at| at.xi.abs() >= FARTHEST) {
             return Ok(false);
         }

@@ -9,7 +9,7 @@ use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Lanes, Run, TileNode, Tiles};
 use crate::material::Material;
 use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
-use crate::shape::stencil::At;
+use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
 use crate::step::grid_to_particles::GatherKernel;
@@ -54,27 +54,46 @@ pub struct Space<const D: usize> {
 }
 
 impl<const D: usize> Space<D> {
-    /// Position in units of the spacing, from node 0; what is behind a wall that modifies shape functions counts as on it.
+    /// Position in units of the spacing, from node 0.
     #[inline(always)]
     pub fn to_units<R: Real>(&self, x: [R; D]) -> [R; D] {
         let inverse = R::splat(self.inverse);
-        each!(d in D => {
-            let [low, high] = self.inside[d];
-            ((x[d] - R::splat(self.origin[d])) * inverse).max(R::splat(low)).min(R::splat(high))
-        })
+        each!(d in D => (x[d] - R::splat(self.origin[d])) * inverse)
     }
 
-    /// Where shape functions are wanted for particles with edges `size` [m].
+    /// The same; what is behind a wall that modifies shape functions counts as on it.
     #[inline(always)]
-    pub fn at<R: Real>(&self, x: [R; D], size: [R; D]) -> [At<R>; D] {
+    pub fn between_walls<R: Real>(&self, x: [R; D]) -> [R; D] {
         let xi = self.to_units(x);
-        let half = R::splat(0.5 * self.inverse);
-        let mut at =
-            [At { xi: xi[0], half: size[0] * half, walls: self.walls[0].map(R::splat) }; D];
+        each!(d in D => xi[d].max(R::splat(self.inside[d][0])).min(R::splat(self.inside[d][1])))
+    }
+
+    /// The stencil of particles with edges `size` [m].
+    #[inline(always)]
+    pub fn stencil<R: Real, S: ShapeFunction<N>, const N: usize>(
+        &self,
+        x: [R; D],
+        size: [R; D],
+    ) -> Stencil<R, N, D> {
+        let xi = if S::MODIFIED { self.between_walls(x) } else { self.to_units(x) };
+        let mut axes = [S::axis(self.at(0, xi[0], size[0])); D];
         for d in 1..D {
-            at[d] = At { xi: xi[d], half: size[d] * half, walls: self.walls[d].map(R::splat) };
+            axes[d] = S::axis(self.at(d, xi[d], size[d]));
         }
-        at
+        Stencil { axes }
+    }
+
+    #[inline(always)]
+    fn at<R: Real>(&self, d: usize, xi: R, size: R) -> At<R> {
+        let [low, high] = self.walls[d];
+        let half = size * R::splat(0.5 * self.inverse);
+        At { xi, half, walls: [R::splat(low), R::splat(high)] }
+    }
+
+    /// Where any shape function is wanted for a point without extent.
+    pub fn at_point(&self, x: [f64; D], size: [f64; D]) -> [At<f64>; D] {
+        let xi = self.between_walls(x);
+        std::array::from_fn(|d| self.at(d, xi[d], size[d]))
     }
 }
 
@@ -178,7 +197,7 @@ impl<const D: usize> State<D> {
     pub fn new(context: Arc<Context>, options: Options) -> Result<Self> {
         let origin = std::array::from_fn(|d| options.origin[d]);
         let mut world = Self {
-            kernels: Kernels::new(options.shape, options.wall_treatment),
+            kernels: Kernels::new(&options),
             grid: Grid::new(options.spacing, origin),
             tiles: Tiles::new(options.shape.nodes()),
             context,

@@ -8,6 +8,7 @@ mod support;
 mod bad_input;
 mod conditions;
 mod determinism;
+mod equations;
 mod examples;
 mod fortran;
 mod header;

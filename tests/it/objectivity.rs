@@ -184,6 +184,23 @@ fn hyperelastic_models_in_simple_shear_have_the_stress_of_the_closed_form() {
 }
 
 #[test]
+fn the_stored_energy_in_simple_shear_is_that_of_the_closed_form() {
+    let (gamma, steps) = (1.5, 100);
+    let k = f64::asinh(0.5 * gamma);
+    for (model, w) in [("neo_hookean", 0.5 * MU * gamma * gamma), ("hencky", 2.0 * MU * k * k)] {
+        for dimension in [2, 3] {
+            let mut block = Block::new(dimension, model, Isa::best());
+            block.drive(shear(gamma / (f64::from(steps) * DT)), steps as usize);
+            let energies = read(&block.world, block.body, "strain_energy");
+            let volumes = read(&block.world, block.body, "volume");
+            for (u, v) in energies.iter().zip(volumes) {
+                assert!((u / (v * w) - 1.0).abs() < 1e-11, "{model}: {u} J, closed form {}", v * w);
+            }
+        }
+    }
+}
+
+#[test]
 fn the_closed_form_of_dienes_is_the_integral_of_the_green_naghdi_rate() {
     for gamma in [0.1, 1.0, 3.0, 6.0] {
         let ((xy, xx), (xy1, xx1)) = (dienes(gamma), dienes_integrated(gamma));

@@ -159,7 +159,7 @@ fn docs_do_not_name_files_that_do_not_exist() {
 }
 
 /// Every file of the repository with one of the extensions, as a path from its root, sorted.
-fn files(extensions: &[&str]) -> Vec<String> {
+pub fn files(extensions: &[&str]) -> Vec<String> {
     fn visit(folder: &Path, extensions: &[&str], found: &mut Vec<String>) {
         for entry in fs::read_dir(folder).expect("a folder that can be read") {
             let path = entry.expect("an entry that can be read").path();

@@ -43,7 +43,7 @@ impl Cone {
             ConeKind::Extension => (6.0 / (3.0 + sin_phi), 6.0 * sin_psi / (3.0 + sin_psi)),
             ConeKind::PlaneStrain => (3.0 * root / (3.0 + sin_phi * sin_psi), 3.0 * sin_psi / root),
         };
-        Self { slope: factor * sin_phi, strength: factor * cohesion * cos_phi, dilation }
+        Self { slope: factor * sin_phi, strength: factor * cohesion * cos_phi, dilation } // [DRP-1]
     }
 }
 

@@ -176,7 +176,7 @@ impl DruckerPrager {
 
         let Cone { slope, strength, dilation } = self.cone;
         let excess = q - slope * p - strength;
-        let plastic = excess / (3.0 * shear + bulk * slope * dilation);
+        let plastic = excess / (3.0 * shear + bulk * slope * dilation); // [DRP-2]
         let multiplier = if excess > 0.0 { plastic } else { 0.0 };
         let p_end = p + bulk * dilation * multiplier;
 
@@ -191,7 +191,7 @@ impl DruckerPrager {
         Loaded {
             stress: stress.map(|x| if opens { 0.0 } else { x }),
             plastic_strain: if opens { q / (3.0 * shear) } else { multiplier },
-            opened: if opens { -p / bulk } else { 0.0 },
+            opened: if opens { -p / bulk } else { 0.0 }, // [DRP-3]
         }
     }
 }

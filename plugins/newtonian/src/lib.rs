@@ -114,7 +114,7 @@ impl<P: Pressure> PointLaw<1> for Law<P> {
         // An opened point keeps the wave speed of its volume ratio.
         let p = if p < self.least_pressure { self.least_pressure } else { p };
         let [xx, yy, zz, xy, yz, zx] = deviator(strain).map(|e| self.two_mu_per_dt * e);
-        let stress1 = [xx - p, yy - p, zz - p, xy, yz, zx];
+        let stress1 = [xx - p, yy - p, zz - p, xy, yz, zx]; // [NWT-2]
         let wave_speed = (self.bulk_modulus * tangent / density).sqrt();
         let sane = is_finite(strain) & is_finite(stress1) & (j > 0.0) & is_finite([wave_speed]);
         Updated {

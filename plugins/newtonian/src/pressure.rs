@@ -20,7 +20,7 @@ impl<const EXPONENT: usize> Pressure for Whole<EXPONENT> {
             power *= j;
         }
         let tangent = 1.0 / power;
-        ((1.0 - j) * sum * tangent * (1.0 / EXPONENT as f64), tangent)
+        ((1.0 - j) * sum * tangent * (1.0 / EXPONENT as f64), tangent) // [NWT-1]
     }
 }
 
@@ -33,7 +33,7 @@ impl Pressure for Real {
     #[inline(always)]
     fn relative(&self, j: f64) -> (f64, f64) {
         let power_minus_one = math::exp_m1(-self.exponent * math::ln(j));
-        (power_minus_one / self.exponent, power_minus_one + 1.0)
+        (power_minus_one / self.exponent, power_minus_one + 1.0) // [NWT-1]
     }
 }
 
