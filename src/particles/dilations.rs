@@ -29,7 +29,12 @@ impl<'a, const D: usize> Dilations<'a, D> {
     }
 
     /// Rate of growth of particle k [1/s].
-    pub fn rate(&mut self, k: usize) -> &mut f64 {
+    pub fn rate(&self, k: usize) -> f64 {
+        self.rates[k - self.first]
+    }
+
+    /// The same, to write.
+    pub fn rate_mut(&mut self, k: usize) -> &mut f64 {
         &mut self.rates[k - self.first]
     }
 }

@@ -12,6 +12,7 @@ use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
+use crate::step::average_dilation::Patches;
 use crate::step::filter_velocities::Filtered;
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
@@ -174,6 +175,8 @@ pub struct State<const D: usize> {
     pub impulses: Vec<[f64; 3]>,
     /// Velocities of nodes on their way through a filter; used by filtered transfers alone.
     pub filtered: Vec<Filtered>,
+    /// Sums of F-bar.
+    pub patches: Patches,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
@@ -208,6 +211,7 @@ impl<const D: usize> State<D> {
             conditions: Conditions::default(),
             impulses: Vec::new(),
             filtered: Vec::new(),
+            patches: Patches::default(),
             sorting: Sorting::default(),
             regroup: true,
             rescan: true,

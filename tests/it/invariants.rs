@@ -188,7 +188,7 @@ fn what_rests_and_carries_no_wave_falls_onto_a_wall_and_not_through_it() {
 }
 
 #[test]
-fn f_bar_gives_the_particles_with_the_same_lowest_node_one_rate() {
+fn f_bar_gives_the_particles_of_a_cell_one_rate() {
     for dimension in [2, 3] {
         for order in StepOrder::ALL {
             for transfer in [TransferKind::Apic, TransferKind::PicFlip] {
@@ -202,7 +202,7 @@ fn f_bar_gives_the_particles_with_the_same_lowest_node_one_rate() {
     }
 }
 
-/// Largest difference between the growths of two particles with the same lowest node in one step, over the largest growth.
+/// Largest difference between the growths of two particles of a cell in one step, over the largest growth.
 fn spread_of_growth(options: &Options, f_bar: bool) -> f64 {
     let context = context(2);
     let material = elastic(&context, 1e4, 0.3);
@@ -220,8 +220,8 @@ fn spread_of_growth(options: &Options, f_bar: bool) -> f64 {
     let growth: Vec<f64> = volumes.iter().zip(&v0).map(|(v, v0)| v / v0 - 1.0).collect();
     let mut patches = std::collections::BTreeMap::<Vec<i64>, Vec<f64>>::new();
     for (x, r) in x.chunks(d).zip(&growth) {
-        let lowest = x.iter().map(|x| (x / 0.1 - 0.5).floor() as i64).collect();
-        patches.entry(lowest).or_default().push(*r);
+        let cell = x.iter().map(|x| (x / 0.1).floor() as i64).collect();
+        patches.entry(cell).or_default().push(*r);
     }
     let range = |list: &Vec<f64>| {
         let fold = |start, f: fn(f64, f64) -> f64| list.iter().copied().fold(start, f);

@@ -4,7 +4,7 @@
 //! run does is the driver of its family, a function from the set-up to named quantities and curves ([`family`]).
 //!
 //! * [`case`] reads the files, [`run`] runs them side by side, [`judge`] compares with references and gates.
-//! * [`family`] holds the drivers, [`world`] what they share.
+//! * [`family`] holds the drivers, [`world`] and [`statics`] what they share.
 //!
 //! `cargo xtask verify` writes the report; the test `cases` runs each case in its small sizes.
 
@@ -15,4 +15,5 @@ pub mod jet;
 pub mod judge;
 pub mod motion;
 pub mod run;
+pub mod statics;
 pub mod world;

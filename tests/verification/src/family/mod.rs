@@ -1,14 +1,19 @@
 //! The drivers: one file for each family of cases. A driver is a function from a set-up to an [`Outcome`].
 
 mod bar;
+mod cantilever;
 mod column;
+mod cylinder;
 mod dam;
 mod discs;
 mod element;
 mod homogeneous;
 mod manufactured;
+mod self_weight;
 mod slosh;
+mod specimen;
 mod spin;
+mod squeeze;
 mod tank;
 mod vortex;
 
@@ -28,14 +33,19 @@ type Prepare = fn(&Value) -> Result<Prepared, String>;
 /// Every family under its name in the files of the cases.
 const FAMILIES: &[(&str, Prepare)] = &[
     ("bar", |setup| with(setup, bar::run)),
+    ("cantilever", |setup| with(setup, cantilever::run)),
     ("column", |setup| with(setup, column::run)),
+    ("cylinder", |setup| with(setup, cylinder::run)),
     ("dam", |setup| with(setup, dam::run)),
     ("discs", |setup| with(setup, discs::run)),
     ("element", |setup| with(setup, element::run)),
     ("homogeneous", |setup| with(setup, homogeneous::run)),
     ("manufactured", |setup| with(setup, manufactured::run)),
+    ("self_weight", |setup| with(setup, self_weight::run)),
     ("slosh", |setup| with(setup, slosh::run)),
+    ("specimen", |setup| with(setup, specimen::run)),
     ("spin", |setup| with(setup, spin::run)),
+    ("squeeze", |setup| with(setup, squeeze::run)),
     ("tank", |setup| with(setup, tank::run)),
     ("vortex", |setup| with(setup, vortex::run)),
 ];
