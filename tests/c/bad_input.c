@@ -342,75 +342,6 @@ static void bad_choices_and_counts(void) {
   EXPECT(lahar_context_load_plugin(context, "\xff\xfe/", NULL), LAHAR_ERROR_INVALID_ARGUMENT, "`name_or_path` is not UTF-8");
 }
 
-/* A world of one option that is wrong, or of two that do not go together. */
-static void refuse_method(int32_t *which, int32_t value, int32_t *other, int32_t other_value, lahar_world_options *options,
-                          lahar_status status, const char *part) {
-  lahar_world *made = world;
-  OK(lahar_world_options_init(options, sizeof *options));
-  options->spacing = 0.1;
-  *which = value;
-  if (other != NULL) *other = other_value;
-  EXPECT(lahar_world_create(context, options, &made), status, part);
-  CHECK(made == NULL);
-}
-
-static void bad_methods(void) {
-  double position[2] = {0.05, 0.05}, volume[1] = {1e-2}, size[2] = {0.1, -0.1};
-  lahar_world_options o;
-  lahar_particles particles;
-  lahar_world *made = NULL;
-  lahar_wall wall;
-  int64_t id;
-  refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.shape, LAHAR_SHAPE_LINEAR, &o, LAHAR_ERROR_UNSUPPORTED, "or TPIC with Linear");
-  refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.shape, LAHAR_SHAPE_UNIFORM_GIMP, &o, LAHAR_ERROR_UNSUPPORTED, "quadratic or cubic B-spline");
-  refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.wall_treatment, LAHAR_WALLS_MODIFIED, &o, LAHAR_ERROR_UNSUPPORTED, "APIC with wall_treatment modified");
-  refuse_method(&o.axisymmetric, 1, NULL, 0, &o, LAHAR_ERROR_UNSUPPORTED, "needs dimension 2");
-  refuse_method(&o.axisymmetric, 2, NULL, 0, &o, LAHAR_ERROR_INVALID_ARGUMENT, "`axisymmetric` is 2");
-  refuse_method(&o.body_force, -1, NULL, 0, &o, LAHAR_ERROR_INVALID_ARGUMENT, "`body_force` is -1");
-  refuse_method(&o.wall_treatment, 7, NULL, 0, &o, LAHAR_ERROR_INVALID_ARGUMENT, "wall_treatment must be 0");
-  refuse_method(&o.filter_order, 21, NULL, 0, &o, LAHAR_ERROR_INVALID_ARGUMENT, "filter_order must be 1 (PIC) to 20");
-  refuse_method(&o.filter_order, -1, NULL, 0, &o, LAHAR_ERROR_INVALID_ARGUMENT, "filter_order must be 1 (PIC) to 20");
-  OK(lahar_world_options_init(&o, sizeof o));
-  o.spacing = 0.1;
-  o.pic_rate = -1.0;
-  EXPECT(lahar_world_create(context, &o, &made), LAHAR_ERROR_INVALID_ARGUMENT, "pic_rate must be 0");
-
-  /* GIMP without sizes, a size that is none, a particle on the axis of symmetry, walls between nodes, a particle behind a wall. */
-  OK(lahar_particles_init(&particles, sizeof particles));
-  particles.count = 1;
-  particles.position.data = position;
-  particles.volume.data = volume;
-  particles.density = 1000.0;
-  o.pic_rate = 0.0;
-  o.dimension = 2;
-  o.shape = LAHAR_SHAPE_CONTIGUOUS_GIMP;
-  o.wall_treatment = LAHAR_WALLS_MODIFIED;
-  o.axisymmetric = 1;
-  OK(lahar_world_create(context, &o, &made));
-  REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "GIMP shape functions need the sizes");
-  particles.size.data = size;
-  REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "size of particle 0 must be positive");
-  size[1] = 0.1;
-  position[0] = -0.05;
-  REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "must have a positive radius");
-  position[0] = 0.05;
-  OK(lahar_wall_init(&wall, sizeof wall));
-  wall.axis = 1;
-  wall.position = 0.13;
-  REFUSED(made, lahar_wall_add(made, &wall, &id), LAHAR_ERROR_UNSUPPORTED, "the nearest is at 0.1");
-  wall.position = 0.1;
-  OK(lahar_wall_add(made, &wall, &id));
-  REFUSED(made, lahar_wall_add(made, &wall, &id), LAHAR_ERROR_UNSUPPORTED, "one wall on each side");
-  REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "is behind a wall");
-  position[1] = 0.15;
-  OK(lahar_body_add_particles(made, material, &particles, &id));
-  REFUSED(made, lahar_body_set_f_bar(made, id, 2), LAHAR_ERROR_INVALID_ARGUMENT, "`on` must be 0 or 1");
-  REFUSED(made, lahar_body_set_f_bar(made, 99, 1), LAHAR_ERROR_NOT_FOUND, "no body has the id 99");
-  OK(lahar_body_set_f_bar(made, id, 1));
-  OK(lahar_world_step_auto(made, NULL));
-  lahar_world_free(made);
-}
-
 static void unknown_names_and_parameters(void) {
   const char *good[] = {"youngs_modulus", "poissons_ratio"}, *wrong[] = {"youngs_modul", "poissons_ratio"};
   const char *twice[] = {"youngs_modulus", "youngs_modulus"};
@@ -605,7 +536,6 @@ int main(int argc, char **argv) {
   bad_numbers();
   bad_polygons();
   bad_choices_and_counts();
-  bad_methods();
   unknown_names_and_parameters();
   bad_plugin_files(argv[4], argv[5]);
   step_larger_than_stable();

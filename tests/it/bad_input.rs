@@ -1,4 +1,4 @@
-//! Bad input from C: `tests/c/null_arguments.c`, `tests/c/bad_input.c` and `tests/c/bad_conditions.c`.
+//! Bad input from C: `tests/c/null_arguments.c`, `bad_input.c`, `bad_methods.c` and `bad_conditions.c` beside it.
 
 use super::compiler::{program, read, run};
 use super::header::{is_pointer, prototypes};
@@ -45,6 +45,12 @@ fn name_of(argument: &str) -> String {
 #[test]
 fn bad_conditions_are_answered_before_the_first_step() {
     let program = program(&repository("tests/c/bad_conditions.c"));
+    run(Command::new(program).arg(plugin_path("linear_elastic")));
+}
+
+#[test]
+fn methods_that_do_not_go_together_are_refused_with_the_nearest_that_do() {
+    let program = program(&repository("tests/c/bad_methods.c"));
     run(Command::new(program).arg(plugin_path("linear_elastic")));
 }
 

@@ -127,8 +127,8 @@ fn the_stored_energy_in_simple_shear_is_that_of_the_closed_form() {
     let k = f64::asinh(0.5 * gamma);
     for (model, w) in [("neo_hookean", 0.5 * MU * gamma * gamma), ("hencky", 2.0 * MU * k * k)] {
         for dimension in [2, 3] {
-            let mut block = Block::new(dimension, model, Isa::best());
-            block.drive(shear(gamma / (f64::from(steps) * DT)), steps as usize);
+            let mut block = block(dimension, model, Isa::best());
+            block.drive(shear(gamma, steps), steps).expect("good steps");
             let energies = read(&block.world, block.body, "strain_energy");
             let volumes = read(&block.world, block.body, "volume");
             for (u, v) in energies.iter().zip(volumes) {

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::run::Outcome;
 use crate::statics::{pull, ramp, settle};
-use crate::world::{Method, elastic, fill, positions, read, rectangle, wall};
+use crate::world::{Elastic, Method, fill, positions, read, rectangle, wall};
 
 /// Radii a = 1 m and b = 2 m, p = 1 Pa, E = 1 MPa, ν = 0.3, ρ = 1000 kg/m³; axially symmetric, one row of cells between smooth plates. The
 /// pressure grows over five times 4 b / c.
@@ -76,7 +76,7 @@ fn displacement(r: f64) -> f64 {
 }
 
 fn cylinder(setup: &Setup, h: f64) -> Result<(World, i64)> {
-    let (context, material) = elastic(YOUNG, POISSON)?;
+    let (context, material) = Elastic::LinearElastic.material(YOUNG, POISSON)?;
     let mut options = setup.method.options(h);
     options.origin = [0.0, setup.method.wall_shift() * h, 0.0];
     options.damping = setup.damping;

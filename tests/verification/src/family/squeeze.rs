@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::run::Outcome;
 use crate::statics::settle;
-use crate::world::{Method, advance, elastic, fill, positions, read, rectangle, wall};
+use crate::world::{Elastic, Method, advance, fill, positions, read, rectangle, wall};
 
 /// Width 4 m, height 1 m, plane strain, E = 1 MPa, ρ = 1000 kg/m³; the plates approach by 1 mm in the time in which a shear wave crosses the
 /// width eight times, and stay. A quarter is computed.
@@ -78,7 +78,7 @@ pub fn run(setup: &Setup) -> Result<Outcome> {
 
 /// A quarter of the block: world, body, and the wall where the plate is.
 fn block(setup: &Setup, h: f64) -> Result<(World, i64, i64)> {
-    let (context, rubber) = elastic(YOUNG, setup.poissons_ratio)?;
+    let (context, rubber) = Elastic::LinearElastic.material(YOUNG, setup.poissons_ratio)?;
     let mut options = setup.method.options(h);
     options.damping = setup.damping;
     let mut world = World::new(&context, &options)?;

@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use crate::run::Outcome;
 use crate::statics::{pull, ramp, settle};
-use crate::world::{Method, elastic, fill, positions, read, rectangle, wall, write};
+use crate::world::{Elastic, Method, fill, positions, read, rectangle, wall, write};
 
 /// A specimen and how it is computed.
 #[derive(Deserialize)]
@@ -60,7 +60,7 @@ impl Cube {
     /// Gives `stress` (mean σ_zz [Pa]), `stress_error` (largest |σ_zz + 1 Pa|), `side_stress` (largest of |σ_xx| and |σ_yy| [Pa]) and
     /// `lateral`, the mean strain along x and y.
     fn run(&self, setup: &Setup) -> Result<Outcome> {
-        let (context, material) = elastic(1000.0, self.poissons_ratio)?;
+        let (context, material) = Elastic::LinearElastic.material(1000.0, self.poissons_ratio)?;
         let mut options = setup.method.options(1.0 / self.cells as f64);
         (options.dimension, options.damping) = (3, setup.damping);
         let mut world = World::new(&context, &options)?;
@@ -116,7 +116,7 @@ impl Bar {
     fn run(&self, setup: &Setup) -> Result<Outcome> {
         let (dt, ramped, steps) = (1e-3, 500, 1000);
         let h = 1.0 / self.cells as f64;
-        let (context, material) = elastic(1e6, 0.0)?;
+        let (context, material) = Elastic::LinearElastic.material(1e6, 0.0)?;
         let mut options = setup.method.options(h);
         options.origin = [setup.method.wall_shift() * h, 0.0, 0.0];
         (options.damping, options.body_force) = (setup.damping, self.at_centres);

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use super::Setup;
 use crate::run::Outcome;
 use crate::statics::{pull, ramp, settle};
-use crate::world::{elastic, lattice, positions, read, wall};
+use crate::world::{Elastic, lattice, positions, read, wall};
 
 /// 5 m × 8 m with a hole of r = 0.5 m in its middle, E = 1 MPa, ν = 0, ρ = 2000 kg/m³; a traction of 1 Pa at both short edges grows
 /// over twice 16 m / c. A quarter is computed.
@@ -34,7 +34,7 @@ impl Plate {
     pub fn run(&self, setup: &Setup) -> Result<Outcome> {
         let h = RADIUS / self.cells as f64;
         let pitch = h / f64::from(self.particles_per_cell);
-        let (context, material) = elastic(YOUNG, 0.0)?;
+        let (context, material) = Elastic::LinearElastic.material(YOUNG, 0.0)?;
         let mut options = setup.method.options(h);
         options.origin = [setup.method.wall_shift() * h; 3];
         options.damping = setup.damping;
