@@ -83,6 +83,7 @@ impl Wall {
     }
 
     /// Velocity that the wall leaves a node with velocity `v`.
+    #[inline(always)]
     pub fn constrain<const D: usize>(&self, v: [f64; D]) -> [f64; D] {
         let side = f64::from(self.side);
         let mut out = v;
