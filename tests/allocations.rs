@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lahar::boundary::{BoxRegion, PrescribedVelocity, Table, Traction, Wall, WallKind};
 use lahar::step::StepOrder;
+use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::options::Options;
 
@@ -47,7 +48,7 @@ static ALLOCATOR: Counting = Counting;
 
 /// Two stiff blocks that fly through a box, fall and bounce: particles change blocks in every step, and blocks of the
 /// grid come and go.
-fn bouncing_blocks(threads: usize, order: StepOrder) -> World {
+fn bouncing_blocks(threads: usize, order: StepOrder, transfer: TransferKind) -> World {
     let context = context(threads);
     let stiff = elastic(&context, 5e5, 0.3);
     let options = Options {
@@ -55,6 +56,7 @@ fn bouncing_blocks(threads: usize, order: StepOrder) -> World {
         spacing: 0.1,
         gravity: [0.0, 0.0, -9.81],
         order,
+        transfer,
         ..Options::default()
     };
     let mut world = world(&context, &options);
@@ -66,7 +68,8 @@ fn bouncing_blocks(threads: usize, order: StepOrder) -> World {
     }
     let (a, b) = (a_box([0.2; 3], [1.2, 1.1, 1.0]), a_box([1.3; 3], [2.2; 3]));
     let loaded = fill(&mut world, &stiff, &a, 1000.0, [3.0, -2.0, 4.0]);
-    fill(&mut world, &stiff, &b, 1000.0, [-5.0, -3.0, 1.0]);
+    let averaged = fill(&mut world, &stiff, &b, 1000.0, [-5.0, -3.0, 1.0]);
+    world.set_f_bar(averaged, true).expect("a body");
     add_conditions(&mut world, loaded);
     world
 }
@@ -86,8 +89,8 @@ fn add_conditions(world: &mut World, body: i64) {
 }
 
 /// Allocations in 200 steps after 200 others, and the blocks that came and went meanwhile.
-fn allocations(threads: usize, order: StepOrder) -> (usize, i64) {
-    let mut world = bouncing_blocks(threads, order);
+fn allocations(threads: usize, order: StepOrder, transfer: TransferKind) -> (usize, i64) {
+    let mut world = bouncing_blocks(threads, order, transfer);
     assert!(world.totals(None).expect("totals").particles > 4096, "enough for threads");
     world.advance(1e9, 200).1.expect("warm-up");
     let mut turnover = 0;
@@ -103,12 +106,17 @@ fn allocations(threads: usize, order: StepOrder) -> (usize, i64) {
 /// The tests of this binary share the counter: one test, so that nothing else runs beside a count.
 #[test]
 fn a_warm_step_allocates_nothing() {
-    for order in [StepOrder::Usl, StepOrder::Musl] {
-        let (count, turnover) = allocations(1, order);
+    let of_each = [
+        (StepOrder::Usl, TransferKind::Apic),
+        (StepOrder::Musl, TransferKind::Apic),
+        (StepOrder::Usavg, TransferKind::Xpic),
+    ];
+    for (order, transfer) in of_each {
+        let (count, turnover) = allocations(1, order, transfer);
         assert!(turnover > 20, "only {turnover} blocks came and went");
         assert_eq!(count, 0, "{order:?}: allocations in 200 steps");
         // each step enters the pool once, and rayon's queue of jobs from outside takes a new block every 63 entries
-        let (count, _) = allocations(2, order);
+        let (count, _) = allocations(2, order, transfer);
         println!("{order:?}, 2 threads: {count} allocations in 200 steps");
         assert!(count <= 200 / 63 + 1, "{order:?}, 2 threads: {count} allocations in 200 steps");
     }

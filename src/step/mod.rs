@@ -23,6 +23,7 @@ pub mod filter_velocities;
 pub mod grid_to_particles;
 pub mod locate;
 pub mod naive;
+pub mod order;
 pub mod particles_to_grid;
 pub mod time_step;
 pub mod update_domain;
@@ -30,9 +31,11 @@ pub mod update_grid;
 pub mod update_strain;
 pub mod update_stress;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::world::hooks::HookPoint;
 use crate::world::state::{Piece, State};
+
+pub use order::StepOrder;
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
 use apply_tractions::apply_tractions;
@@ -45,34 +48,6 @@ use time_step::Limits;
 use update_grid::update_grid;
 use update_strain::update_strain;
 use update_stress::{Outcome, update_stress};
-
-/// Where in a step the stress is updated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum StepOrder {
-    /// Update stress last.
-    Usl = 0,
-    /// Modified update stress last: the velocity gradient comes from particle velocities mapped a second time.
-    Musl = 1,
-    /// Update stress first.
-    Usf = 2,
-    /// Half of the stress update first, half last.
-    Usavg = 3,
-}
-
-impl StepOrder {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Usl, Self::Musl, Self::Usf, Self::Usavg];
-
-    /// The order with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        Self::ALL.into_iter().find(|order| *order as i32 == value).ok_or_else(|| {
-            Error::invalid(format!(
-                "order must be 0 (USL), 1 (MUSL), 2 (USF) or 3 (USAVG), got {value}"
-            ))
-        })
-    }
-}
 
 /// One step of length `dt` [s]. On success gives the limits of the next time step.
 pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
