@@ -120,6 +120,10 @@ int main(int argc, char **argv) {
                                      {"cubic", LAHAR_SHAPE_CUBIC_BSPLINE}};
     const int coarsest = argc > 1 ? atoi(argv[1]) : 16, grids = argc > 2 ? atoi(argv[2]) : 3;
     const double A = argc > 3 ? atof(argv[3]) : 0.05;
+    if (coarsest < 1 || grids < 2 || !(A > 0.0)) {
+        fprintf(stderr, "usage: 06_convergence [cells >= 1, default 16] [grids >= 2, default 3] [amplitude > 0, default 0.05 m]\n");
+        return 2;
+    }
     const char *names[] = {"youngs_modulus", "poissons_ratio"};
     const double values[] = {youngs_modulus, poissons_ratio};
     lahar_context *context;

@@ -640,6 +640,7 @@ typedef struct lahar_world_options {
     // One of LAHAR_WALLS_*.
     int32_t wall_treatment;
     // 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
+    // Gravity must act along y. Hold the axis with a slip wall at x = 0: a step of particles that crossed it is refused.
     int32_t axisymmetric;
     // Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
     // 0: the default, 2.
@@ -1131,10 +1132,12 @@ lahar_status lahar_wall_init(lahar_wall *wall, int64_t size);
 // Adds a wall.
 //
 // `wall`: copied. `id`: gets the id of the wall; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_UNSUPPORTED
+// (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
-lahar_status lahar_wall_add(lahar_world *world, const lahar_wall *wall, int64_t *id);
+lahar_status lahar_wall_add(lahar_world *world,
+                            const lahar_wall *wall,
+                            int64_t *id);
 
 // Removes a wall. Its id is not used again.
 //
@@ -1294,7 +1297,8 @@ lahar_status lahar_traction_remove(lahar_world *world, int64_t id);
 //
 // `particles`: gets the number of particles that carry it; may be NULL.
 // `area`: gets their area [m^2]; may be NULL.
-// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first.
+// `force`: written, the force on the body in the last step, or of a query that mapped it to the grid since [N],
+// shape [3]; 0 before.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_traction_force(const lahar_world *world,
@@ -1386,7 +1390,8 @@ lahar_status lahar_world_set_gravity_table(lahar_world *world,
 //
 // `equilibrium`: written; the host has set `struct_size`.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a model has no wave speed for the
-// present state), LAHAR_ERROR_BUSY.
+// present state), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN (an open write view while particles
+// have to be sorted), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_equilibrium(const lahar_world *world,
                                      lahar_equilibrium *equilibrium);

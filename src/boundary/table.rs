@@ -42,6 +42,19 @@ impl Table {
         Ok(Self { times: times.to_vec(), values: values.to_vec() })
     }
 
+    /// The same table with zeros in the components that are not kept.
+    pub fn keeping(mut self, keeps: impl Fn(usize) -> bool) -> Self {
+        for value in &mut self.values {
+            (0..3).filter(|c| !keeps(*c)).for_each(|c| value[c] = 0.0);
+        }
+        self
+    }
+
+    /// The values of all rows.
+    pub fn rows(&self) -> &[[f64; 3]] {
+        &self.values
+    }
+
     /// The values at a time [s].
     pub fn at(&self, time: f64) -> [f64; 3] {
         let next = self.times.partition_point(|t| *t <= time);

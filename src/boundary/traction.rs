@@ -71,6 +71,16 @@ impl Traction {
         let radius = |c: &Chosen<D>| {
             if axisymmetric { c.x[0] + outwards * c.size[0] } else { 1.0 }
         };
+        if let Some(c) = chosen.iter().find(|c| !(radius(c) > 0.0)) {
+            return Err(Error::invalid(format!(
+                "the loaded face of particle {} of body {} is at the radius {}: its edge {} is too long for its place {}",
+                c.id,
+                body.id,
+                radius(c),
+                c.size[0],
+                c.x[0]
+            )));
+        }
         let mut wanted = vec![NONE; particles.len()];
         for (n, c) in chosen.iter().enumerate() {
             wanted[c.id as usize] = n as u32;

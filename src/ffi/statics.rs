@@ -93,7 +93,8 @@ fn from_equilibrium(e: &Equilibrium) -> lahar_equilibrium {
 ///
 /// `equilibrium`: written; the host has set `struct_size`.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a model has no wave speed for the
-/// present state), LAHAR_ERROR_BUSY.
+/// present state), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN (an open write view while particles
+/// have to be sorted), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_equilibrium(

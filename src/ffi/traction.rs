@@ -139,7 +139,8 @@ pub unsafe extern "C" fn lahar_traction_remove(world: *mut lahar_world, id: i64)
 ///
 /// `particles`: gets the number of particles that carry it; may be NULL.
 /// `area`: gets their area [m^2]; may be NULL.
-/// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first.
+/// `force`: written, the force on the body in the last step, or of a query that mapped it to the grid since [N],
+/// shape [3]; 0 before.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///

@@ -130,6 +130,7 @@ pub struct lahar_world_options {
     /// One of LAHAR_WALLS_*.
     pub wall_treatment: i32,
     /// 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
+    /// Gravity must act along y. Hold the axis with a slip wall at x = 0: a step of particles that crossed it is refused.
     pub axisymmetric: i32,
     /// Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
     /// 0: the default, 2.

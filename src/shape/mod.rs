@@ -53,6 +53,17 @@ impl ShapeKind {
         })
     }
 
+    /// Its name in messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::QuadraticBspline => "quadratic B-spline",
+            Self::CubicBspline => "cubic B-spline",
+            Self::UniformGimp => "uniform GIMP",
+            Self::ContiguousGimp => "contiguous-particle GIMP",
+        }
+    }
+
     /// Nodes of a stencil along one axis.
     pub const fn nodes(self) -> usize {
         match self {

@@ -186,6 +186,26 @@ fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D])
     .at(Place { particle: Some(id), body: Some(body.id), ..world.place() })
 }
 
+/// Refuses particles on or beyond the axis of symmetry.
+pub fn check_radii<const D: usize>(world: &State<D>) -> Result<()> {
+    for body in world.bodies.iter().filter(|_| world.options.axisymmetric) {
+        let radii = body.particles.column(body.particles.layout.position);
+        let least = radii.iter().fold(f64::INFINITY, |least, r| least.min(*r));
+        if least > 0.0 {
+            continue;
+        }
+        let k = radii.iter().position(|r| *r <= 0.0).unwrap_or(0);
+        let id = body.particles.id[k];
+        let text = format!(
+            "particle {id} of body {} has crossed the axis of symmetry, to x = {:e}: add a slip wall at x = 0, or take smaller steps",
+            body.id, radii[k]
+        );
+        let place = Place { particle: Some(id), body: Some(body.id), ..world.place() };
+        return Err(Error::new(Status::OutsideGrid, text).at(place));
+    }
+    Ok(())
+}
+
 /// Marks every particle that may have left the block of its run, or the box of a static grid, and takes other marks away.
 fn mark_moved<const D: usize>(world: &mut State<D>) {
     let (space, parallel) = (world.space(), world.parallel);

@@ -40,9 +40,9 @@ pub use order::StepOrder;
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
 use apply_tractions::apply_tractions;
 use average_dilation::{average_dilation, share_dilation};
-use filter_velocities::filter_velocities;
+use filter_velocities::{filter_again, filter_start, filter_velocities};
 use grid_to_particles::{Gather, grid_to_particles};
-use locate::locate;
+use locate::{check_radii, locate};
 use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
 use time_step::Limits;
 use update_grid::update_grid;
@@ -51,6 +51,7 @@ use update_stress::{Outcome, update_stress};
 
 /// One step of length `dt` [s]. On success gives the limits of the next time step.
 pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
+    check_radii(world)?;
     locate(world)?;
     world.hook(HookPoint::Start, dt);
     let outcome = match world.options.order {
@@ -96,6 +97,7 @@ fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     });
     velocities_to_grid(world, Scattered::Momentum);
     apply_boundaries_again(world);
+    filter_again(world);
     average_dilation(world, Gather::SecondGradient);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::PositionAndGradient, dt);
@@ -130,6 +132,7 @@ fn stress_of_start<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
     particles_to_grid(world);
     update_grid(world, 0.0);
     apply_boundaries(world, dt);
+    filter_start(world);
     average_dilation(world, Gather::Gradient);
     world.for_each_chunk(|piece| {
         grid_to_particles(piece, Gather::Gradient, dt);

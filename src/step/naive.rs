@@ -30,6 +30,7 @@ pub fn step<const D: usize>(
     if first > 0.0 {
         let mut grid = scatter(s, particles, affine(particles));
         grid.iter_mut().for_each(|(i, n)| n.1[V] = walled(s, i, n.1[MV] / n.0));
+        filter_field(s, particles, &mut grid, V);
         let x: Vec<_> = particles.iter().map(|p| p.x).collect();
         strain(s, particles, &x, (&grid, V), first * dt, update);
     }
@@ -69,6 +70,7 @@ pub fn step<const D: usize>(
     if o.order == StepOrder::Musl {
         let again = scatter(s, particles, affine(particles));
         grid.iter_mut().for_each(|(i, n)| n.1[LAST] = walled(s, i, again[i].1[MV] / n.0));
+        filter_field(s, particles, &mut grid, LAST);
     }
     match o.order {
         StepOrder::Usf => particles.iter_mut().zip(&x).for_each(|(p, x)| p.x = *x),
@@ -80,19 +82,32 @@ pub fn step<const D: usize>(
 /// The velocities that particles take in XPIC and FMPM; in the latter they are those of the grid too.
 fn filter_grid<const D: usize>(s: Setup<'_>, particles: &[Particle<D>], grid: &mut Grid<D>) {
     let xpic = s.0.transfer == TransferKind::Xpic;
-    for (i, n) in grid.iter_mut() {
+    for n in grid.values_mut() {
         n.1[LAST] = n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() };
-        n.1[U] = walled(s, i, n.1[LAST]);
     }
-    for _ in 1..s.0.filter_order {
-        let u = gather(s, particles, grid, U);
-        let again = scatter(s, particles, |k, _| u[k]);
-        for (i, n) in grid.iter_mut() {
-            n.1[U] = walled(s, i, n.1[U] + n.1[LAST] - again[i].1[MV] / n.0);
-        }
-    }
+    sum_terms(s, particles, grid, LAST);
     for (i, n) in grid {
         n.1[U] = walled(s, i, n.1[U] + n.1[V] - n.1[LAST]);
         n.1[V] = if xpic { n.1[V] } else { n.1[U] };
+    }
+}
+
+/// A field that came from the particles, filtered if the transfer is.
+fn filter_field<const D: usize>(s: Setup<'_>, ps: &[Particle<D>], grid: &mut Grid<D>, f: usize) {
+    if s.0.transfer.is_filtered() {
+        sum_terms(s, ps, grid, f);
+        grid.values_mut().for_each(|n| n.1[f] = n.1[U]);
+    }
+}
+
+/// The terms of the filter that begin with a field, summed into U.
+fn sum_terms<const D: usize>(s: Setup<'_>, ps: &[Particle<D>], grid: &mut Grid<D>, start: usize) {
+    grid.iter_mut().for_each(|(i, n)| n.1[U] = walled(s, i, n.1[start]));
+    for _ in 1..s.0.filter_order {
+        let u = gather(s, ps, grid, U);
+        let again = scatter(s, ps, |k, _| u[k]);
+        for (i, n) in grid.iter_mut() {
+            n.1[U] = walled(s, i, n.1[U] + n.1[start] - again[i].1[MV] / n.0);
+        }
     }
 }

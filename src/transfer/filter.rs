@@ -7,7 +7,7 @@
 //! * XPIC(m): u = Δv + F_m(v^n). C. C. Hammerquist, J. A. Nairn, Comput. Methods Appl. Mech. Engrg. 318 (2017) 724–738,
 //!   doi:10.1016/j.cma.2017.01.035. In lahar positions move with v^{n+1}, the velocity at the middle of the step in leapfrog.
 //! * FMPM(k): u = F_k(v^{n+1}), which approaches the inverse of the full mass matrix; positions and velocity gradients take u
-//!   too. J. A. Nairn, C. C. Hammerquist, Comput. Methods Appl. Mech. Engrg. 377 (2021) 113667, doi:10.1016/j.cma.2021.113667.
+//!   too. Where MUSL and USF take gradients of velocities that came from the particles again, those go through F as well. J. A. Nairn, C. C. Hammerquist, Comput. Methods Appl. Mech. Engrg. 377 (2021) 113667, doi:10.1016/j.cma.2021.113667.
 //!
 //! Both are PIC for order 1. An order costs an additional gather and scatter per step and unit.
 

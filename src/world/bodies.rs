@@ -8,6 +8,7 @@ use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
 use crate::shape::ShapeKind;
 use crate::step::locate::FARTHEST;
+use crate::tensor::Mat3;
 
 use super::host_arrays::{ParticleArrays, Strided, Strides};
 use super::options::Options;
@@ -41,6 +42,16 @@ impl<const D: usize> State<D> {
             return Err(Error::invalid(
                 "GIMP shape functions need the sizes of particles: give `size`, the edge lengths of their domains [m]",
             ));
+        }
+        let h = self.options.spacing;
+        if let (true, Some(size)) = (extras.size, &arrays.size) {
+            let most = |k: usize| (0..D).fold(0.0, |most, d| f64::max(most, size.get(d, k)));
+            if let Some(k) = (0..n).find(|k| most(*k) > h * (1.0 + 1e-9)) {
+                return Err(Error::invalid(format!(
+                    "size of particle {k} is {} m, more than the spacing of {h} m: a domain of GIMP is one cell wide at most",
+                    most(k)
+                )));
+            }
         }
         let mut particles = Particles::new(Layout::new(D, &extras), n)?;
         let layout = particles.layout;
@@ -206,6 +217,17 @@ impl<const D: usize> State<D> {
                 return Err(Error::invalid(text).at(place(k)));
             }
             let far = !(0..D).all(near);
+            if layout.state > layout.deformation_gradient {
+                let f = particles.get::<9>(layout.deformation_gradient, k);
+                let det = Mat3::from_row_slice(&f).determinant();
+                if !(det > 0.0) {
+                    let text = format!(
+                        "deformation_gradient of particle {} must have a positive determinant, got {det} of {f:?}",
+                        particles.id[k]
+                    );
+                    return Err(Error::invalid(text).at(place(k)));
+                }
+            }
             if self.options.axisymmetric && x[0] <= 0.0 {
                 let text = format!(
                     "particle {} at {x:?} must have a positive radius x: this world is axisymmetric about x = 0",

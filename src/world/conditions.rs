@@ -5,7 +5,6 @@ use crate::boundary::{PrescribedVelocity, Surface, Table, Traction};
 use crate::error::Result;
 use crate::step::time_step::Limits;
 
-use super::options::check_gravity;
 use super::state::State;
 use super::{World, not_found, on};
 
@@ -91,6 +90,9 @@ impl World {
     /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the options.
     pub fn set_gravity_table(&mut self, table: Option<Table>) -> Result<()> {
         self.check_alive()?;
+        for gravity in table.iter().flat_map(Table::rows) {
+            self.options().check_gravity(*gravity)?;
+        }
         on!(&mut self, s => s.conditions.gravity = table);
         Ok(())
     }
@@ -98,7 +100,7 @@ impl World {
     /// Sets constant gravity [m/s²] from the next step on; a table is forgotten.
     pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<()> {
         self.check_alive()?;
-        check_gravity(gravity)?;
+        self.options().check_gravity(gravity)?;
         on!(&mut self, s => {
             s.options.gravity = gravity;
             s.conditions.gravity = None;
@@ -107,9 +109,11 @@ impl World {
     }
 
     /// Adds a prescribed velocity and gives its id.
-    pub fn add_prescribed_velocity(&mut self, condition: PrescribedVelocity) -> Result<i64> {
+    pub fn add_prescribed_velocity(&mut self, mut condition: PrescribedVelocity) -> Result<i64> {
         self.check_alive()?;
         condition.check(self.options().dimension)?;
+        let components = condition.components; // what is free must not limit the step
+        condition.velocity = condition.velocity.keeping(|a| components >> a & 1 == 1);
         on!(&mut self, s => {
             let id = s.conditions.next_prescribed;
             s.conditions.next_prescribed += 1;

@@ -110,10 +110,32 @@ impl Options {
                 self.filter_order
             )));
         }
-        check_gravity(self.gravity)?;
+        self.check_gravity(self.gravity)?;
         check_damping(self.damping)?;
         self.check_combination()?;
         if self.grid_policy == GridPolicy::Static { self.check_box() } else { Ok(()) }
+    }
+
+    /// Whether shape functions are modified next to walls; linear ones have nothing to modify.
+    pub fn modifies_shapes(&self) -> bool {
+        self.wall_treatment == WallTreatment::Modified && self.shape != ShapeKind::Linear
+    }
+
+    /// Gravity must be finite, and along the axis in axial symmetry.
+    pub fn check_gravity(&self, gravity: [f64; 3]) -> Result<()> {
+        if !gravity.iter().all(|g| g.is_finite()) {
+            return Err(Error::invalid(format!("gravity must be finite [m/s^2], got {gravity:?}")));
+        }
+        if self.axisymmetric && gravity[0] != 0.0 {
+            return Err(Error::new(
+                Status::Unsupported,
+                format!(
+                    "in axial symmetry gravity acts along the axis y alone, got {} m/s^2 along the radius x: set it to 0",
+                    gravity[0]
+                ),
+            ));
+        }
+        Ok(())
     }
 
     /// Refuses what does not go together, with the nearest combination that does.
@@ -122,9 +144,9 @@ impl Options {
         let moment = matches!(self.shape, ShapeKind::QuadraticBspline | ShapeKind::CubicBspline);
         if self.transfer == TransferKind::Mls && !moment {
             return unsupported(format!(
-                "transfer MLS divides by Σ w r², which {:?} shape functions let vanish: use a quadratic or cubic B-spline, \
-                 or TPIC with {:?}",
-                self.shape, self.shape
+                "transfer MLS divides by Σ w r², which is not the same everywhere, or vanishes, for {} shape functions: use a \
+                 quadratic or cubic B-spline, or transfer TPIC with this shape",
+                self.shape.name()
             ));
         }
         if self.transfer == TransferKind::Mls && self.wall_treatment == WallTreatment::Modified {
@@ -164,14 +186,6 @@ impl Options {
         }
         Ok(())
     }
-}
-
-/// Gravity must be finite.
-pub fn check_gravity(gravity: [f64; 3]) -> Result<()> {
-    if gravity.iter().all(|g| g.is_finite()) {
-        return Ok(());
-    }
-    Err(Error::invalid(format!("gravity must be finite [m/s^2], got {gravity:?}")))
 }
 
 /// Damping must lie in [0, 1).

@@ -231,7 +231,7 @@ impl<const D: usize> State<D> {
 
     /// Origin, spacing and the two figures of the shape function.
     pub fn space(&self) -> Space<D> {
-        let modified = self.options.wall_treatment == WallTreatment::Modified;
+        let modified = self.options.modifies_shapes();
         let mut walls = [[f64::NEG_INFINITY, f64::INFINITY]; D];
         for Wall { axis, side, position, .. } in self.walls.iter().map(|entry| entry.wall) {
             if modified {
@@ -244,7 +244,10 @@ impl<const D: usize> State<D> {
             spacing: self.options.spacing,
             inverse: 1.0 / self.options.spacing,
             first_offset: self.options.shape.first_offset(),
-            wall_reach: if modified { 0.0 } else { self.options.shape.wall_reach() },
+            wall_reach: match self.options.wall_treatment {
+                WallTreatment::Plain => self.options.shape.wall_reach(),
+                WallTreatment::Modified => 0.0,
+            },
             walls,
             inside: walls.map(|[low, high]| [low, below(high)]),
         }

@@ -120,9 +120,10 @@ impl World {
                 criteria.until
             )));
         }
-        if criteria.until.is_infinite() && self.stable_dt()?.is_infinite() {
+        let empty = on!(&self, s => s.particle_count() == 0);
+        if empty || criteria.until.is_infinite() && self.stable_dt()?.is_infinite() {
             return Err(Error::invalid(
-                "the stable step is infinite (no particles, or none that carries a wave): nothing can settle; give `until`",
+                "the stable step is infinite (no particles, or none that carries a wave): nothing can settle; add a body, or give `until`",
             ));
         }
         Ok(())

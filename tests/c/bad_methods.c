@@ -25,7 +25,7 @@ static void bad_methods(void) {
   lahar_world *made = NULL;
   lahar_wall wall;
   int64_t id;
-  refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.shape, LAHAR_SHAPE_LINEAR, &o, LAHAR_ERROR_UNSUPPORTED, "or TPIC with Linear");
+  refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.shape, LAHAR_SHAPE_LINEAR, &o, LAHAR_ERROR_UNSUPPORTED, "for linear shape functions");
   refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.shape, LAHAR_SHAPE_UNIFORM_GIMP, &o, LAHAR_ERROR_UNSUPPORTED, "quadratic or cubic B-spline");
   refuse_method(&o.transfer, LAHAR_TRANSFER_MLS, &o.wall_treatment, LAHAR_WALLS_MODIFIED, &o, LAHAR_ERROR_UNSUPPORTED, "APIC with wall_treatment modified");
   refuse_method(&o.axisymmetric, 1, NULL, 0, &o, LAHAR_ERROR_UNSUPPORTED, "needs dimension 2");
@@ -54,10 +54,13 @@ static void bad_methods(void) {
   REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "GIMP shape functions need the sizes");
   particles.size.data = size;
   REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "size of particle 0 must be positive");
+  size[1] = 0.11;
+  REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "more than the spacing of 0.1 m");
   size[1] = 0.1;
   position[0] = -0.05;
   REFUSED(made, lahar_body_add_particles(made, material, &particles, &id), LAHAR_ERROR_INVALID_ARGUMENT, "must have a positive radius");
   position[0] = 0.05;
+  REFUSED(made, lahar_world_set_gravity(made, (const double[3]){1, 0, 0}), LAHAR_ERROR_UNSUPPORTED, "along the axis y alone");
   OK(lahar_wall_init(&wall, sizeof wall));
   wall.axis = 1;
   wall.position = 0.13;
@@ -72,6 +75,29 @@ static void bad_methods(void) {
   REFUSED(made, lahar_body_set_f_bar(made, 99, 1), LAHAR_ERROR_NOT_FOUND, "no body has the id 99");
   OK(lahar_body_set_f_bar(made, id, 1));
   OK(lahar_world_step_auto(made, NULL));
+  lahar_world_free(made);
+
+  /* A particle that is driven through the axis of symmetry. */
+  o.shape = LAHAR_SHAPE_UNIFORM_GIMP;
+  o.wall_treatment = LAHAR_WALLS_PLAIN;
+  OK(lahar_world_create(context, &o, &made));
+  OK(lahar_body_add_particles(made, material, &particles, &id));
+  {
+    lahar_prescribed_velocity inwards;
+    lahar_status status = LAHAR_OK;
+    int step;
+    OK(lahar_prescribed_velocity_init(&inwards, sizeof inwards));
+    inwards.components = LAHAR_COMPONENT_X;
+    inwards.velocity[0] = -1.0;
+    for (step = 0; step < 3; ++step) {
+      inwards.box_min[step] = -1.0;
+      inwards.box_max[step] = 1.0;
+    }
+    OK(lahar_prescribed_velocity_add(made, &inwards, NULL));
+    for (step = 0; step < 10000 && status == LAHAR_OK; ++step) status = lahar_world_step_auto(made, NULL);
+    CHECK(status == LAHAR_ERROR_OUTSIDE_GRID);
+    REFUSED(made, lahar_world_step_auto(made, NULL), LAHAR_ERROR_OUTSIDE_GRID, "add a slip wall at x = 0");
+  }
   lahar_world_free(made);
 }
 

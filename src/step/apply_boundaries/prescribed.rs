@@ -20,7 +20,10 @@ pub fn prescribe<const D: usize>(world: &mut State<D>, dt: f64) {
         let mut impulse = [0.0; 3];
         for_each_prescribed(world, n, |a, r0, r1, force| {
             let (mass, change) = (r0[0], target[a] - r0[a + 1]);
-            if damped && r0[a + 1] != 0.0 {
+            // once for each component of a node, whatever number of conditions hold it: lane 0 of R1, which is free, remembers
+            let seen = f64::from(1 << a);
+            if damped && r0[a + 1] != 0.0 && r1[0] as i32 >> a & 1 == 0 {
+                r1[0] += seen;
                 impulse[a] -= dt * (force[a + 1] + mass * gravity[a]) - mass * r1[a + 1];
             }
             r0[a + 1] = target[a]; // [CND-3]
