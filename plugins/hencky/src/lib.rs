@@ -3,6 +3,7 @@
 
 mod principal;
 
+use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
@@ -114,11 +115,7 @@ impl Model for Hencky {
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [e, nu] = values[..] else { return Err("expected 2 values".into()) };
-        let shear_modulus = e / (2.0 * (1.0 + nu));
-        let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-        if !(lambda.is_finite() && shear_modulus.is_finite()) {
-            return Err(format!("Young's modulus {e} gives moduli that are not finite"));
-        }
+        let [lambda, shear_modulus] = lame(e, nu)?;
         Ok(Self { lambda, shear_modulus })
     }
 

@@ -1,6 +1,7 @@
 //! Isotropic linear elasticity in rate form: Δσ = λ tr(Δε) I + 2 G Δε on the objectively rotated stress.
 #![forbid(unsafe_code)]
 
+use lahar_plugin::elastic::lame;
 use lahar_plugin::tensor::{is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
@@ -66,11 +67,7 @@ impl Model for LinearElastic {
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [e, nu] = values[..] else { return Err("expected 2 values".into()) };
-        let shear_modulus = e / (2.0 * (1.0 + nu));
-        let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-        if !(lambda.is_finite() && shear_modulus.is_finite()) {
-            return Err(format!("Young's modulus {e} gives moduli that are not finite"));
-        }
+        let [lambda, shear_modulus] = lame(e, nu)?;
         Ok(Self { lambda, shear_modulus })
     }
 

@@ -1,6 +1,7 @@
 //! Compressible neo-Hookean elasticity: σ = [μ (b − I) + λ ln J I] / J with b = F Fᵀ, J = det F.
 #![forbid(unsafe_code)]
 
+use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{contract, determinant, deviator, is_finite, left_cauchy_green, trace};
 use lahar_plugin::{
@@ -76,11 +77,7 @@ impl Model for NeoHookean {
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [e, nu] = values[..] else { return Err("expected 2 values".into()) };
-        let shear_modulus = e / (2.0 * (1.0 + nu));
-        let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-        if !(lambda.is_finite() && shear_modulus.is_finite()) {
-            return Err(format!("Young's modulus {e} gives moduli that are not finite"));
-        }
+        let [lambda, shear_modulus] = lame(e, nu)?;
         Ok(Self { lambda, shear_modulus })
     }
 

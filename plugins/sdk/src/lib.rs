@@ -16,6 +16,7 @@
 
 mod batch;
 mod drive;
+pub mod elastic;
 pub mod math;
 mod model;
 mod point;
