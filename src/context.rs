@@ -8,9 +8,9 @@ pub(crate) use log::{LogQueue, LogScope, push_current};
 
 use crate::error::{Error, Result, Status};
 use crate::material::{Model, Plugin};
-use crate::plugin::{self, StaticTable};
+pub use crate::plugin::RustEntry;
+use crate::plugin::{self, StaticEntry};
 use crate::simd::Isa;
-use lahar_plugin_abi::lahar_plugin_desc;
 use pool::Pool;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -120,21 +120,20 @@ impl Context {
         self.add(plugin::load(name_or_path)?)
     }
 
-    /// Takes a plugin that is linked into the program, such as `lahar_model_linear_elastic::plugin()`, and returns its
-    /// index in [`Context::plugins`]. The same table gives the same index again. The plugin's path is its id in brackets.
+    /// Takes a plugin that is linked into the program by its entry, such as `lahar_model_linear_elastic::plugin`, and returns its
+    /// index in [`Context::plugins`]. The same entry gives the same index again. The plugin's path is its id in brackets.
     ///
     /// The table and all that it points to must follow the plugin ABI, as those of a library that is loaded must; those
-    /// that `lahar_plugin` makes do. Since the entry of the plugin is not called, it has no host table: what it logs is
-    /// lost, and so is the text of an error that is not one of its `check`.
+    /// that `lahar_plugin` makes do.
     ///
     /// Errors: [`Status::PluginInvalid`], [`Status::PluginAbi`]. The list of plugins is then what it was.
-    pub fn register_plugin(&self, desc: &'static lahar_plugin_desc) -> Result<usize> {
-        self.register_table(StaticTable::of(desc))
+    pub fn register_plugin(&self, entry: RustEntry) -> Result<usize> {
+        self.register(StaticEntry::rust(entry))
     }
 
-    pub(crate) fn register_table(&self, table: StaticTable) -> Result<usize> {
+    pub(crate) fn register(&self, entry: StaticEntry) -> Result<usize> {
         let _scope = LogScope::enter(&self.log);
-        self.add(plugin::register(table)?)
+        self.add(plugin::register(entry)?)
     }
 
     /// The index of a plugin in this context, where it is new unless it is there already.

@@ -411,10 +411,10 @@ module lahar
 
     function lahar_context_register_plugin(context, plugin, index) &
         bind(c, name="lahar_context_register_plugin") result(answer)
-      import :: c_int32_t, c_int64_t, c_ptr
+      import :: c_funptr, c_int32_t, c_int64_t, c_ptr
       implicit none
       type(c_ptr), value :: context
-      type(c_ptr), value :: plugin
+      type(c_funptr), value :: plugin
       integer(c_int64_t), intent(inout), optional :: index(*)
       integer(c_int32_t) :: answer
     end function lahar_context_register_plugin

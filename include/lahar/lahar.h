@@ -40,8 +40,9 @@
 extern "C" {
 #endif
 
-// The table of a plugin, defined in lahar_plugin.h.
+// The tables of plugins and of the engine, defined in lahar_plugin.h.
 struct lahar_plugin_desc;
+struct lahar_host_api;
 
 /* ---- status ------------------------------------------------------------------------------------
  *
@@ -197,6 +198,9 @@ typedef struct lahar_context lahar_context;
 // `any`. It must not unwind, throw or longjmp.
 typedef void (*lahar_log_callback)(int32_t level, const char *message, void *user);
 
+// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see lahar_plugin.h.
+typedef const struct lahar_plugin_desc *(*lahar_plugin_entry_callback)(const struct lahar_host_api *host);
+
 // A loaded plugin. The texts are static: they live as long as the process.
 typedef struct lahar_plugin_info {
     // sizeof(lahar_plugin_info); set by the host.
@@ -287,15 +291,15 @@ lahar_status lahar_context_load_plugin(lahar_context *context,
                                        const char *name_or_path,
                                        int64_t *plugin);
 
-// Takes a plugin that is linked into the program; a table that is registered already is found again.
+// Takes a plugin that is linked into the program; an entry that is registered already is found again.
 //
-// `plugin`: its table (see lahar_plugin.h), which must stay as it is until the process ends, with all that it points to.
-// The plugin's entry is not called; a plugin that logs or sets error texts needs the host table that the entry gets.
+// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known; the tables that it returns must stay as they are until the
+// process ends.
 // `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
 // Thread: any
 lahar_status lahar_context_register_plugin(lahar_context *context,
-                                           const struct lahar_plugin_desc *plugin,
+                                           lahar_plugin_entry_callback plugin,
                                            int64_t *index);
 
 // Number of plugins that are loaded into the context.

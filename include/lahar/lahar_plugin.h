@@ -25,9 +25,19 @@ extern "C" {
  * components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
  * gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
  *
- * Thread rule: `lahar_plugin_entry_v1`, `create`, `destroy` and `check` are called by one thread at a time; `init_state`,
- * `update` and `wave_speed` may be called from several threads on the same instance, unless the model does not
- * declare `LAHAR_CAPABILITY_THREAD_SAFE`. No function may unwind, `longjmp`, exit or print.
+ * Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
+ * extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
+ *
+ * * `[exclusive]`: one call at a time in the whole process, on any thread;
+ * * `[concurrent]`: on any thread, at the same time as other calls on the same instance, unless the model does not declare
+ *   `LAHAR_CAPABILITY_THREAD_SAFE`: then one call at a time over all such models of the library.
+ *
+ * No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
+ * may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
+ *
+ * Versions: tables grow only at their ends, and both sides tell their minor version. A plugin that needs a newer engine says so in
+ * `required_minor` of the model, or refuses in its entry after a look at `abi_minor` of the host table. An engine takes tables that
+ * are longer than it knows, and fills a batch as far as its own `struct_size`.
  */
 
 // Major version of the plugin ABI; it is part of the entry's name.
@@ -83,14 +93,27 @@ extern "C" {
 // Input: a length of the discretisation, the grid spacing [m].
 #define LAHAR_INPUT_ELEMENT_LENGTH 2
 
-// Input: temperature [K]. No engine of minor 0 offers it.
+// Input: temperature [K], the particle field `temperature` of the host.
 #define LAHAR_INPUT_TEMPERATURE 3
 
-// Input: specific internal energy [J/kg]. No engine of minor 0 offers it.
+// Input: specific internal energy at the start of the step [J/kg]: the particle field `strain_energy` over the mass. The field follows the
+// work of the stress, or the output `energy` of a model that gives it.
 #define LAHAR_INPUT_INTERNAL_ENERGY 4
 
-// Input: pore pressure [Pa]. No engine of minor 0 offers it.
+// Input: pore pressure, compression positive [Pa], the particle field `pore_pressure` of the host.
 #define LAHAR_INPUT_PORE_PRESSURE 5
+
+// Input: x of the position [m].
+#define LAHAR_INPUT_POSITION_X 6
+
+// Input: y of the position [m].
+#define LAHAR_INPUT_POSITION_Y 7
+
+// Input: z of the position [m]; 0 in plane strain.
+#define LAHAR_INPUT_POSITION_Z 8
+
+// Input: id of the particle inside its body, counted from 0 [-].
+#define LAHAR_INPUT_PARTICLE_ID 9
 
 // Output: speed of the fastest wave [m/s]; every model must give it.
 #define LAHAR_OUTPUT_WAVE_SPEED 1
@@ -98,10 +121,11 @@ extern "C" {
 // Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
 #define LAHAR_OUTPUT_DIFFUSIVITY 2
 
-// Output: stored energy per current volume at the end of the step [J/m^3]; replaces the engine's work integral.
+// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces the engine's work integral.
 #define LAHAR_OUTPUT_ENERGY 4
 
-// Output: factor by which the model wants the next time step changed, in (0, 1] [-].
+// Output: factor by which the model wants the time step changed, in (0, 1] [-]. Below 1 the engine repeats the step smaller if the host
+// allows that, else it shortens the next one.
 #define LAHAR_OUTPUT_DT_FACTOR 8
 
 // Output: one of the `LAHAR_POINT_*` per point.
@@ -119,16 +143,31 @@ extern "C" {
 // The extension `lahar.tangent` is offered.
 #define LAHAR_CAPABILITY_TANGENT 8
 
+// The model may end the process (`STOP` of legacy code); the engine warns when it loads the plugin.
+#define LAHAR_CAPABILITY_MAY_STOP 16
+
+// The model may print (legacy code); the engine warns when it loads the plugin.
+#define LAHAR_CAPABILITY_MAY_PRINT 32
+
+// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split copies.
+#define LAHAR_TRANSFER_MEAN 0
+
+// Transfer rule: the largest, component by component.
+#define LAHAR_TRANSFER_MAX 1
+
+// Transfer rule: points that differ in it are not merged.
+#define LAHAR_TRANSFER_NEVER 2
+
 // The point is updated.
 #define LAHAR_POINT_OK 0
 
 // The point is updated, but the result is less accurate than promised.
 #define LAHAR_POINT_UNRELIABLE 1
 
-// The point is updated, but the model wants a smaller step.
+// The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
 #define LAHAR_POINT_SMALLER_STEP 2
 
-// The point could not be updated.
+// The point could not be updated; its end is not used.
 #define LAHAR_POINT_FAILED 3
 
 // Return value of a plugin function: done.
@@ -137,20 +176,31 @@ extern "C" {
 // Return value of a plugin function: not done; `set_error` of the host table may say why.
 #define LAHAR_PLUGIN_ERROR 1
 
-// Levels of `lahar_host_api.log`, those of `lahar.h`: 0 error, 1 warning, 2 information, 3 detail.
+// Level of `lahar_host_api.log`: something failed.
+#define LAHAR_PLUGIN_LOG_ERROR 0
+
+// Level: something is unusual.
 #define LAHAR_PLUGIN_LOG_WARNING 1
 
-// What the engine offers to a plugin. Valid for the life of the process. Every function may be called from any thread.
+// Level: milestones.
+#define LAHAR_PLUGIN_LOG_INFORMATION 2
+
+// Level: details for finding a fault.
+#define LAHAR_PLUGIN_LOG_DETAIL 3
+
+// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only members inside `struct_size`.
 typedef struct lahar_host_api {
     // Size of this table in bytes, as the engine knows it.
     uint32_t struct_size;
     // Minor version of the ABI that the engine speaks.
     uint32_t abi_minor;
-    // Hands a line to the host's log. `level` as in `lahar.h`; `message` is copied.
+    // Hands a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is copied. Heard while a function of the
+    // plugin runs. [concurrent]
     void (*log)(int32_t level, const char *message);
     // Sets the text that explains why the function that is running returns an error; `message` is copied.
+    // [concurrent]
     void (*set_error)(const char *message);
-    // 1 if the host wants long work to end, else 0.
+    // 1 if the host wants long work to end, else 0. [concurrent]
     int32_t (*should_stop)(void);
 } lahar_host_api;
 
@@ -168,7 +218,7 @@ typedef struct lahar_parameter_desc {
     int32_t kind;
     // 1: the host must give it; 0: `default_value` is used.
     int32_t required;
-    // Value if the host gives none.
+    // Value if the host gives none, inside the hard bounds. Of a required parameter a typical value, with which tools try the model.
     double default_value;
     // Smallest value that is accepted; -infinity for none.
     double hard_min;
@@ -212,6 +262,8 @@ typedef struct lahar_stress_batch {
     double dt;
     // Time at the start of the step [s].
     double time;
+    // Number of steps before this one; -1 if there is no such count.
+    int64_t step;
     // Strain increment dt sym L, 6 components [-]; NULL unless the kinematics ask for it.
     const double *strain_increment;
     // Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
@@ -232,7 +284,7 @@ typedef struct lahar_stress_batch {
     double *wave_speed;
     // Kinematic diffusivity [m^2/s]; NULL unless declared.
     double *diffusivity;
-    // Stored energy per current volume [J/m^3]; NULL unless declared.
+    // Energy per current volume [J/m^3]; NULL unless declared.
     double *energy;
     // Wanted factor on the next time step [-]; NULL unless declared.
     double *dt_factor;
@@ -266,30 +318,70 @@ typedef struct lahar_model_desc {
     const lahar_state_desc *states;
     // Number of wanted inputs.
     uint32_t input_count;
-    // 0.
-    uint32_t reserved;
+    // Smallest minor version of the engine with which the model works; 0 for any.
+    uint32_t required_minor;
     // The wanted inputs, `LAHAR_INPUT_*`; NULL if there are none.
     const int32_t *inputs;
     // Sum of `LAHAR_OUTPUT_*`; `LAHAR_OUTPUT_WAVE_SPEED` is mandatory.
     uint64_t outputs;
     // Sum of `LAHAR_CAPABILITY_*`.
     uint64_t capabilities;
-    // Makes an instance from one value per parameter. Mandatory. [one thread at a time]
+    // Makes an instance from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
+    // `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
     int32_t (*create)(const double *values, int64_t count, void **instance);
-    // Frees an instance. Mandatory. [one thread at a time]
+    // Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     void (*destroy)(void *instance);
-    // Says whether the values go together; if not, writes a NUL-terminated sentence. May be NULL. [one thread at a time]
+    // Says whether the values go together; if not, writes a NUL-terminated sentence into `capacity` bytes. May be NULL.
+    // [exclusive; before create]
     int32_t (*check)(const double *values, int64_t count, char *message, int64_t capacity);
     // Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
+    // [concurrent; between create and destroy]
     int32_t (*init_state)(const void *instance, const lahar_stress_batch *batch);
-    // One step of all points of the batch. Mandatory. [several threads]
+    // One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of every point. Mandatory. A point that
+    // fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for a batch that makes no sense. [concurrent; between create and destroy]
     int32_t (*update)(const void *instance, const lahar_stress_batch *batch);
     // Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
-    // deformation gradient. Mandatory. [several threads]
+    // deformation gradient. Mandatory. [concurrent; between create and destroy]
     int32_t (*wave_speed)(const void *instance, const lahar_stress_batch *batch);
-    // A table for the extension `id`, or NULL. May be NULL. [any thread]
+    // A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
+    // (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
+    // begin with. [exclusive; after the entry]
     const void *(*get_extension)(const char *id);
 } lahar_model_desc;
+
+// Extension `lahar.tangent`, offered together with `LAHAR_CAPABILITY_TANGENT`.
+typedef struct lahar_tangent_extension {
+    // Size of this table in bytes, as the plugin knows it.
+    uint32_t struct_size;
+    // 0.
+    uint32_t reserved;
+    // The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of point `k`, at
+    // `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component i by strain increment component j. A shear
+    // component of the increment stands for both of its places, so that elasticity has 2 G there. Outputs of the batch may be NULL.
+    // [concurrent; between create and destroy]
+    int32_t (*tangent)(const void *instance, const lahar_stress_batch *batch, double *tangent);
+} lahar_tangent_extension;
+
+// Extension `lahar.energy`.
+typedef struct lahar_energy_extension {
+    // Size of this table in bytes, as the plugin knows it.
+    uint32_t struct_size;
+    // 0.
+    uint32_t reserved;
+    // Energy per current volume [J/m^3], one value per point, that can be had back from `stress0`, `state0` and, if the kinematics ask for
+    // it, the deformation gradient. Outputs of the batch may be NULL. [concurrent; between create and destroy]
+    int32_t (*stored)(const void *instance, const lahar_stress_batch *batch, double *energy);
+} lahar_energy_extension;
+
+// Extension `lahar.transfer`: what becomes of state variables when points are merged. Without it every rule is the mean.
+typedef struct lahar_transfer_extension {
+    // Size of this table in bytes, as the plugin knows it.
+    uint32_t struct_size;
+    // Number of rules, which is the number of state variables.
+    uint32_t count;
+    // One `LAHAR_TRANSFER_*` per state variable.
+    const int32_t *rules;
+} lahar_transfer_extension;
 
 // What a plugin is. All pointers must stay valid for the life of the process.
 typedef struct lahar_plugin_desc {
@@ -315,9 +407,15 @@ typedef struct lahar_plugin_desc {
     const lahar_model_desc *const *models;
 } lahar_plugin_desc;
 
-// Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
-// [one thread at a time; once in a process, again only after it has refused]
+// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after `set_error`.
+// [exclusive; once in a process, again only after it has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *host);
+
+// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports beside its entry: it makes a plugin of the foreign library at `path`
+// (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
+// after it has refused]
+typedef const lahar_plugin_desc *(*lahar_plugin_adapt)(const lahar_host_api *host,
+                                                              const char *path);
 
 #if defined(_WIN32)
 #define LAHAR_PLUGIN_EXPORT __declspec(dllexport)
@@ -327,9 +425,18 @@ typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *hos
 #define LAHAR_PLUGIN_EXPORT
 #endif
 
+// Ids of extensions.
+#define LAHAR_EXTENSION_TANGENT "lahar.tangent"
+#define LAHAR_EXTENSION_ENERGY "lahar.energy"
+#define LAHAR_EXTENSION_TRANSFER "lahar.transfer"
+
 // The one function that a plugin defines: its tables, or NULL to refuse, after `set_error`.
-// [one thread at a time, once in a process]
+// [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
+
+// Defined by adapters beside the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// [exclusive; once for each library, again only after it has refused]
+LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 
 /* ---- layout: what the library was built with, on 64-bit systems */
 
@@ -367,26 +474,27 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, description) == 16);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, kind) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, rotation) == 28);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_desc, initial) == 32);
-LAHAR_ASSERT_LAYOUT(sizeof(lahar_stress_batch) == 144);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_stress_batch) == 152);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, flags) == 4);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, n) == 8);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stride) == 16);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, dt) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, time) == 32);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, strain_increment) == 40);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, velocity_gradient) == 48);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, deformation_gradient) == 56);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress0) == 64);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state0) == 72);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress1) == 80);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state1) == 88);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, inputs) == 96);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, wave_speed) == 104);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, diffusivity) == 112);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, energy) == 120);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, dt_factor) == 128);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, status) == 136);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, step) == 40);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, strain_increment) == 48);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, velocity_gradient) == 56);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, deformation_gradient) == 64);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress0) == 72);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state0) == 80);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, stress1) == 88);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, state1) == 96);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, inputs) == 104);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, wave_speed) == 112);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, diffusivity) == 120);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, energy) == 128);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, dt_factor) == 136);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_stress_batch, status) == 144);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_model_desc) == 152);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, kinematics) == 4);
@@ -400,7 +508,7 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, state_count) == 48);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, state_size) == 52);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, states) == 56);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, input_count) == 64);
-LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, reserved) == 68);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, required_minor) == 68);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, inputs) == 72);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, outputs) == 80);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, capabilities) == 88);
@@ -411,6 +519,18 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, init_state) == 120);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, update) == 128);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, wave_speed) == 136);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_model_desc, get_extension) == 144);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_tangent_extension) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_tangent_extension, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_tangent_extension, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_tangent_extension, tangent) == 8);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_energy_extension) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_energy_extension, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_energy_extension, reserved) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_energy_extension, stored) == 8);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_transfer_extension) == 16);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_transfer_extension, struct_size) == 0);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_transfer_extension, count) == 4);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_transfer_extension, rules) == 8);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_plugin_desc) == 64);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_plugin_desc, abi_major) == 4);

@@ -10,7 +10,7 @@ use std::ptr::NonNull;
 /// Largest `struct_size` that is believed; anything above is an uninitialised field.
 const LARGEST_STRUCT: usize = 4096;
 
-fn null(name: &str) -> Error {
+pub(super) fn null(name: &str) -> Error {
     Error::new(Status::NullArgument, format!("`{name}` is NULL; expected a valid pointer"))
 }
 
@@ -64,12 +64,6 @@ pub(super) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Result<&
     check(pointer, name)?;
     // SAFETY: not NULL, aligned, and by contract valid until the exported function returns.
     Ok(unsafe { &*pointer })
-}
-
-/// A pointer that others check further.
-pub(super) fn not_null<T>(pointer: *const T, name: &str) -> Result<*const T> {
-    check(pointer, name)?;
-    Ok(pointer)
 }
 
 /// A NUL-terminated text in UTF-8.

@@ -1,15 +1,15 @@
 //! Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
 
 use super::arguments::{
-    Grows, c_string, count, handle_out, index, not_null, optional_out, out, struct_out, text,
+    Grows, c_string, count, handle_out, index, null, optional_out, out, struct_out, text,
 };
 use super::cells::ContextCell;
 use super::entry::{call_host, entry, quiet_entry};
 use super::status::lahar_status;
 use crate::context::{Context, LogLevel, LogSink};
 use crate::error::{Error, Result};
-use crate::plugin::StaticTable;
-use lahar_plugin_abi::lahar_plugin_desc;
+use crate::plugin::StaticEntry;
+use lahar_plugin_abi::{lahar_host_api, lahar_plugin_desc};
 use std::ffi::{CStr, c_char, c_void};
 use std::io::Write;
 use std::sync::Arc;
@@ -42,6 +42,10 @@ const _: () = {
 /// `any`. It must not unwind, throw or longjmp.
 pub type lahar_log_callback =
     Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
+
+/// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see lahar_plugin.h.
+pub type lahar_plugin_entry_callback =
+    Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
 
 /// A loaded plugin. The texts are static: they live as long as the process.
 #[repr(C)]
@@ -258,29 +262,26 @@ pub unsafe extern "C" fn lahar_context_load_plugin(
     })
 }
 
-/// Takes a plugin that is linked into the program; a table that is registered already is found again.
+/// Takes a plugin that is linked into the program; an entry that is registered already is found again.
 ///
-/// `plugin`: its table (see lahar_plugin.h), which must stay as it is until the process ends, with all that it points to.
-/// The plugin's entry is not called; a plugin that logs or sets error texts needs the host table that the entry gets.
+/// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known; the tables that it returns must stay as they are until the
+/// process ends.
 /// `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_register_plugin(
     context: *mut lahar_context,
-    plugin: *const lahar_plugin_desc,
+    plugin: lahar_plugin_entry_callback,
     index: *mut i64,
 ) -> lahar_status {
     entry("lahar_context_register_plugin", |scope| {
-        // SAFETY: the host passes NULL or a live handle, a table that stays, and a writable integer.
-        let (cell, table, index) = unsafe {
-            (
-                scope.context(context)?,
-                StaticTable::new(not_null(plugin, "plugin")?),
-                optional_out(index, "index")?,
-            )
+        // SAFETY: the host passes NULL or a live handle, an entry that follows the plugin ABI, and a writable integer.
+        let (cell, entry, index) = unsafe {
+            let plugin = plugin.ok_or_else(|| null("plugin"))?;
+            (scope.context(context)?, StaticEntry::c(plugin), optional_out(index, "index")?)
         };
-        let position = cell.context.register_table(table)?;
+        let position = cell.context.register(entry)?;
         index.inspect(|index| index.set(position as i64));
         Ok(())
     })

@@ -104,19 +104,22 @@ layout! {
     lahar_state_desc: 40 {
         key: 0, unit: 8, description: 16, kind: 24, rotation: 28, initial: 32,
     }
-    lahar_stress_batch: 144 {
-        struct_size: 0, flags: 4, n: 8, stride: 16, dt: 24, time: 32, strain_increment: 40,
-        velocity_gradient: 48, deformation_gradient: 56, stress0: 64, state0: 72, stress1: 80,
-        state1: 88, inputs: 96, wave_speed: 104, diffusivity: 112, energy: 120, dt_factor: 128,
-        status: 136,
+    lahar_stress_batch: 152 {
+        struct_size: 0, flags: 4, n: 8, stride: 16, dt: 24, time: 32, step: 40,
+        strain_increment: 48, velocity_gradient: 56, deformation_gradient: 64, stress0: 72,
+        state0: 80, stress1: 88, state1: 96, inputs: 104, wave_speed: 112, diffusivity: 120,
+        energy: 128, dt_factor: 136, status: 144,
     }
     lahar_model_desc: 152 {
         struct_size: 0, kinematics: 4, name: 8, summary: 16, reference: 24, parameter_count: 32,
         parameter_size: 36, parameters: 40, state_count: 48, state_size: 52, states: 56,
-        input_count: 64, reserved: 68, inputs: 72, outputs: 80, capabilities: 88, create: 96,
+        input_count: 64, required_minor: 68, inputs: 72, outputs: 80, capabilities: 88, create: 96,
         destroy: 104, check: 112, init_state: 120, update: 128, wave_speed: 136,
         get_extension: 144,
     }
+    lahar_tangent_extension: 16 { struct_size: 0, reserved: 4, tangent: 8 }
+    lahar_energy_extension: 16 { struct_size: 0, reserved: 4, stored: 8 }
+    lahar_transfer_extension: 16 { struct_size: 0, count: 4, rules: 8 }
     lahar_plugin_desc: 64 {
         struct_size: 0, abi_major: 4, abi_minor: 8, model_count: 12, id: 16, version: 24,
         author: 32, licence: 40, url: 48, models: 56,

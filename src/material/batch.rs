@@ -14,6 +14,8 @@ pub struct StressBatch<'a> {
     pub dt: f64,
     /// Time at the start of the step [s].
     pub time: f64,
+    /// Number of steps before this one; -1 if there is no such count.
+    pub step: i64,
     /// dt sym L, 6 components [-].
     pub strain_increment: &'a [f64],
     /// L, 9 components [1/s].
@@ -28,10 +30,8 @@ pub struct StressBatch<'a> {
     pub stress1: &'a mut [f64],
     /// State at the end; written by `update` and by `init_state`.
     pub state1: &'a mut [f64],
-    /// Mass density at the end of the step, at least `n` values [kg/m^3].
-    pub density: &'a [f64],
-    /// Grid spacing, at least `n` values [m].
-    pub element_length: &'a [f64],
+    /// The inputs that the model wants, one component each.
+    pub inputs: &'a [f64],
     /// Speed of the fastest wave [m/s].
     pub wave_speed: &'a mut [f64],
     /// Kinematic diffusivity [m^2/s].

@@ -82,9 +82,9 @@ impl Model {
         self.outputs & mask == mask
     }
 
-    /// Whether the model wants this input.
-    pub fn wants(&self, input: Input) -> bool {
-        self.inputs.contains(&input)
+    /// Place of an input among those that the model wants.
+    pub fn input(&self, input: Input) -> Option<usize> {
+        self.inputs.iter().position(|i| *i == input)
     }
 }
 
@@ -122,6 +122,32 @@ pub enum Input {
     Density = abi::LAHAR_INPUT_DENSITY,
     /// Grid spacing [m].
     ElementLength = abi::LAHAR_INPUT_ELEMENT_LENGTH,
+    /// Temperature [K].
+    Temperature = abi::LAHAR_INPUT_TEMPERATURE,
+    /// Specific internal energy at the start of the step [J/kg].
+    InternalEnergy = abi::LAHAR_INPUT_INTERNAL_ENERGY,
+    /// Pore pressure, compression positive [Pa].
+    PorePressure = abi::LAHAR_INPUT_PORE_PRESSURE,
+    /// x of the position [m].
+    PositionX = abi::LAHAR_INPUT_POSITION_X,
+    /// y of the position [m].
+    PositionY = abi::LAHAR_INPUT_POSITION_Y,
+    /// z of the position [m].
+    PositionZ = abi::LAHAR_INPUT_POSITION_Z,
+    /// Id of the particle inside its body [-].
+    ParticleId = abi::LAHAR_INPUT_PARTICLE_ID,
+}
+
+/// What becomes of a state variable when points are merged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Transfer {
+    /// The mean, weighted by mass.
+    Mean = abi::LAHAR_TRANSFER_MEAN,
+    /// The largest, component by component.
+    Max = abi::LAHAR_TRANSFER_MAX,
+    /// Points that differ in it are not merged.
+    Never = abi::LAHAR_TRANSFER_NEVER,
 }
 
 /// What values a parameter takes.
@@ -158,7 +184,7 @@ pub struct Parameter {
     pub kind: ParameterKind,
     /// Whether the host must give it.
     pub required: bool,
-    /// Value if the host gives none.
+    /// Value if the host gives none; of a required parameter a typical value, or 0.
     pub default: f64,
     /// Smallest value that is accepted.
     pub hard_min: f64,
@@ -228,6 +254,8 @@ pub struct StateVariable {
     pub kind: StateKind,
     /// What a rigid rotation does to it.
     pub rotation: Rotation,
+    /// What becomes of it when points are merged.
+    pub transfer: Transfer,
     /// Initial value of every component.
     pub initial: f64,
 }

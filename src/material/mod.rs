@@ -6,6 +6,7 @@ mod description;
 pub use batch::StressBatch;
 pub use description::{
     Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
+    Transfer,
 };
 
 use crate::context::{Context, LogLevel, LogQueue, LogScope};
@@ -57,6 +58,24 @@ impl Material {
     pub fn wave_speed(&self, batch: &mut StressBatch<'_>) -> Result<()> {
         let _scope = LogScope::enter_if_none(&self.log);
         self.instance.wave_speed(batch)
+    }
+
+    /// dσ1/dΔε [Pa] of the step that [`Material::update`] makes of the same batch: component `6 i + j` of point `k` at
+    /// `out[(6 * i + j) * stride + k]`. None if the model does not offer it. Errors as above.
+    pub fn tangent(&self, batch: &mut StressBatch<'_>, out: &mut [f64]) -> Option<Result<()>> {
+        let _scope = LogScope::enter_if_none(&self.log);
+        self.instance.tangent(batch, out)
+    }
+
+    /// Energy per volume [J/m^3] that can be had back, one value per point, from the start of the batch. None if the model does not offer
+    /// it. Errors as above.
+    pub fn stored_energy(
+        &self,
+        batch: &mut StressBatch<'_>,
+        out: &mut [f64],
+    ) -> Option<Result<()>> {
+        let _scope = LogScope::enter_if_none(&self.log);
+        self.instance.stored_energy(batch, out)
     }
 
     /// Lets the model derive the first state from start stress and inputs into `state1`, which holds the initial values.

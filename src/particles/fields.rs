@@ -34,6 +34,10 @@ pub struct Layout {
     pub stress: usize,
     /// Strain energy [J].
     pub strain_energy: usize,
+    /// Temperature [K]; none unless the model wants it.
+    pub temperature: usize,
+    /// Pore pressure, compression positive [Pa]; none unless the model wants it.
+    pub pore_pressure: usize,
     /// Rate of growth that F-bar averages [1/s]; none unless the body has F-bar.
     pub dilation: usize,
     /// Edge lengths of the domain [m], D components; none unless the shape function is sized.
@@ -54,6 +58,10 @@ pub struct Layout {
 /// What a body carries beside what all have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
+    /// Temperature.
+    pub temperature: bool,
+    /// Pore pressure.
+    pub pore_pressure: bool,
     /// Rate of growth.
     pub dilation: bool,
     /// Edge lengths of the domain.
@@ -73,7 +81,8 @@ pub struct Extras {
 impl Layout {
     /// Columns of a body in `dimension` axes.
     pub fn new(dimension: usize, extras: &Extras) -> Self {
-        let Extras { dilation, size, body_force, affine, filtered, gradient, state } = *extras;
+        let Extras { temperature, pore_pressure, dilation, size, body_force, .. } = *extras;
+        let Extras { affine, filtered, gradient, state, .. } = *extras;
         let mut end = 0;
         let mut take = |components: usize| {
             end += components;
@@ -86,6 +95,8 @@ impl Layout {
             volume: take(1),
             stress: take(6),
             strain_energy: take(1),
+            temperature: take(usize::from(temperature)),
+            pore_pressure: take(usize::from(pore_pressure)),
             dilation: take(usize::from(dilation)),
             size: take(if size { dimension } else { 0 }),
             body_force: take(if body_force { dimension } else { 0 }),
@@ -135,12 +146,20 @@ impl Layout {
             field(
                 c"strain_energy",
                 c"J",
-                c"Work of the stress on the strain since the start",
+                c"Work of the stress on the strain since the start, or the model's own energy",
                 self.strain_energy,
                 1,
                 true,
             ),
         ];
+        if self.pore_pressure > self.temperature {
+            let text = c"Temperature, 293.15 until the host writes it";
+            list.push(field(c"temperature", c"K", text, self.temperature, 1, true));
+        }
+        if self.dilation > self.pore_pressure {
+            let text = c"Pore pressure, compression positive";
+            list.push(field(c"pore_pressure", c"Pa", text, self.pore_pressure, 1, true));
+        }
         if self.body_force > self.size {
             let text = c"Edge lengths of the particle's domain";
             list.push(field(c"size", c"m", text, self.size, dimension, true));

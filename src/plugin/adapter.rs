@@ -2,7 +2,7 @@
 
 use super::host::take_error;
 use crate::error::{Error, Result, Status};
-use crate::material::{Input, Kinematics, Model, StressBatch};
+use crate::material::{Kinematics, Model, StressBatch};
 use lahar_plugin_abi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
@@ -11,10 +11,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// `create`, `destroy` and `check` run one at a time in the whole process.
 static LIFECYCLE: Mutex<()> = Mutex::new(());
 
-/// More inputs than there are kinds; the handshake refuses duplicates.
-const INPUTS: usize = 8;
+/// At least as many inputs as there are kinds; the handshake refuses duplicates.
+const INPUTS: usize = 12;
 
 type Call = unsafe extern "C" fn(*const c_void, *const lahar_stress_batch) -> i32;
+
+/// An extension's function, which writes into an array of its own.
+type WithOutput = unsafe extern "C" fn(*const c_void, *const lahar_stress_batch, *mut f64) -> i32;
 
 /// The functions of a model, checked by the handshake.
 pub(crate) struct Functions {
@@ -24,6 +27,8 @@ pub(crate) struct Functions {
     pub(super) init_state: Option<Call>,
     pub(super) update: Call,
     pub(super) wave_speed: Call,
+    pub(super) tangent: Option<WithOutput>,
+    pub(super) stored_energy: Option<WithOutput>,
     /// Serialises the calls of a plugin that has a model which is not thread-safe.
     pub(super) serial: Option<&'static Mutex<()>>,
 }
@@ -122,6 +127,40 @@ impl Instance {
         self.call("init_state", init_state, batch)
     }
 
+    /// Writes dσ1/dΔε, 36 components, into `out`; None if the model does not offer it.
+    pub(crate) fn tangent(
+        &self,
+        batch: &mut StressBatch<'_>,
+        out: &mut [f64],
+    ) -> Option<Result<()>> {
+        let function = self.model.functions.tangent?;
+        Some(self.call_with_output("tangent", function, batch, out, 36))
+    }
+
+    /// Writes the stored energy per volume into `out`; None if the model does not offer it.
+    pub(crate) fn stored_energy(
+        &self,
+        batch: &mut StressBatch<'_>,
+        out: &mut [f64],
+    ) -> Option<Result<()>> {
+        let function = self.model.functions.stored_energy?;
+        Some(self.call_with_output("stored_energy", function, batch, out, 1))
+    }
+
+    fn call_with_output(
+        &self,
+        name: &str,
+        function: WithOutput,
+        batch: &mut StressBatch<'_>,
+        out: &mut [f64],
+        components: usize,
+    ) -> Result<()> {
+        need(name, out.len())?;
+        let out = array_mut(name, out, components, batch.stride)?;
+        // SAFETY: as in `call`; `out` has the components that the extension writes.
+        self.run(name, batch, |raw| unsafe { function(self.pointer, raw, out) })
+    }
+
     fn need_state(&self, name: &str, length: usize) -> Result<()> {
         if self.model.states.is_empty() { Ok(()) } else { need(name, length) }
     }
@@ -131,13 +170,22 @@ impl Instance {
     }
 
     fn call(&self, name: &str, function: Call, batch: &mut StressBatch<'_>) -> Result<()> {
+        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
+        // arrays are borrowed for the call, and mutable borrows do not alias.
+        self.run(name, batch, |raw| unsafe { function(self.pointer, raw) })
+    }
+
+    fn run(
+        &self,
+        name: &str,
+        batch: &mut StressBatch<'_>,
+        function: impl FnOnce(&lahar_stress_batch) -> i32,
+    ) -> Result<()> {
         let inputs = self.input_pointers(batch)?;
         let raw = self.raw_batch(batch, &inputs)?;
         let _one_at_a_time = self.serial();
         take_error();
-        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
-        // arrays are borrowed for the call, and mutable borrows do not alias.
-        let code = unsafe { function(self.pointer, &raw) };
+        let code = function(&raw);
         if code == LAHAR_PLUGIN_OK {
             return Ok(());
         }
@@ -158,13 +206,16 @@ impl Instance {
     /// One pointer per wanted input, in the descriptor's order.
     fn input_pointers(&self, batch: &StressBatch<'_>) -> Result<[*const f64; INPUTS]> {
         let mut pointers = [ptr::null(); INPUTS];
-        for (pointer, input) in pointers.iter_mut().zip(&self.model.inputs) {
-            let (name, data) = match input {
-                Input::Density => ("density", batch.density),
-                Input::ElementLength => ("element_length", batch.element_length),
-            };
-            need(name, data.len())?;
-            *pointer = column(name, data, batch.n)?;
+        let (n, stride, count) = (batch.n, batch.stride, self.model.inputs.len());
+        if stride < n || !stride.is_multiple_of(8) || stride > i64::MAX as usize / 64 {
+            return Err(defect(format!("stride {stride} for {n} points")));
+        }
+        if count > 0 {
+            need("inputs", batch.inputs.len())?;
+        }
+        array("inputs", batch.inputs, count, stride)?;
+        for (pointer, values) in pointers.iter_mut().zip(batch.inputs.chunks(stride.max(1))) {
+            *pointer = values.as_ptr();
         }
         Ok(pointers)
     }
@@ -176,9 +227,6 @@ impl Instance {
         inputs: &[*const f64; INPUTS],
     ) -> Result<lahar_stress_batch> {
         let (n, stride) = (batch.n, batch.stride);
-        if stride < n || !stride.is_multiple_of(8) || stride > i64::MAX as usize / 64 {
-            return Err(defect(format!("stride {stride} for {n} points")));
-        }
         need("stress0", batch.stress0.len())?;
         let model = self.model;
         let state = model.state_components();
@@ -196,6 +244,7 @@ impl Instance {
             stride: stride as i64,
             dt: batch.dt,
             time: batch.time,
+            step: batch.step,
             strain_increment: asked(
                 model.kinematics.takes_strain_increment(),
                 "strain_increment",

@@ -7,6 +7,7 @@ use super::adapter::Functions;
 use crate::error::{Error, Result, Status};
 use crate::material::{
     Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
+    Transfer,
 };
 use lahar_plugin_abi::*;
 use std::collections::HashSet;
@@ -221,6 +222,18 @@ unsafe fn read_model(
         (desc, place.identifier("name", desc.name, "")?)
     };
     let place = &place.inside(format!("model `{}`", name.text));
+    if desc.required_minor > LAHAR_PLUGIN_ABI_MINOR {
+        return Err(Error::new(
+            Status::PluginAbi,
+            format!(
+                "plugin {}: {}: it needs at least minor {} of the plugin ABI, this library speaks \
+                 {LAHAR_PLUGIN_ABI_MAJOR}.{LAHAR_PLUGIN_ABI_MINOR}; use a newer lahar or an older version of the plugin",
+                place.path.display(),
+                place.at,
+                desc.required_minor
+            ),
+        ));
+    }
     let kinematics = match desc.kinematics {
         LAHAR_KINEMATICS_STRAIN_INCREMENT => Kinematics::StrainIncrement,
         LAHAR_KINEMATICS_VELOCITY_GRADIENT => Kinematics::VelocityGradient,
@@ -259,11 +272,17 @@ unsafe fn read_model(
         .map(|(i, p)| unsafe { read_parameter(p, place, i) })
         .collect::<Result<_>>()?;
     // SAFETY: told by the caller.
-    let states: Vec<StateVariable> = states
+    let states_count = states.len();
+    let mut states: Vec<StateVariable> = states
         .into_iter()
         .enumerate()
         .map(|(i, s)| unsafe { read_state(s, place, i) })
         .collect::<Result<_>>()?;
+    // SAFETY: told by the caller.
+    let extensions = unsafe { Extensions::read(desc, place) }?;
+    for (state, rule) in states.iter_mut().zip(extensions.rules(states_count, place)?) {
+        state.transfer = rule;
+    }
     place.unique("parameters", parameters.iter().map(|p| p.key))?;
     place.unique("state variables", states.iter().map(|s| s.key))?;
     Ok(Model {
@@ -280,11 +299,15 @@ unsafe fn read_model(
         inputs: read_inputs(&inputs, place)?,
         outputs: desc.outputs,
         capabilities: desc.capabilities,
-        functions: read_functions(desc, place)?,
+        functions: read_functions(desc, &extensions, place)?,
     })
 }
 
-fn read_functions(desc: &lahar_model_desc, place: &Place<'_>) -> Result<Functions> {
+fn read_functions(
+    desc: &lahar_model_desc,
+    extensions: &Extensions,
+    place: &Place<'_>,
+) -> Result<Functions> {
     let missing = |name: &str| place.error(format!("expected the function `{name}`, got NULL"));
     Ok(Functions {
         create: desc.create.ok_or_else(|| missing("create"))?,
@@ -293,8 +316,91 @@ fn read_functions(desc: &lahar_model_desc, place: &Place<'_>) -> Result<Function
         init_state: desc.init_state,
         update: desc.update.ok_or_else(|| missing("update"))?,
         wave_speed: desc.wave_speed.ok_or_else(|| missing("wave_speed"))?,
+        tangent: extensions.tangent.and_then(|t| t.tangent),
+        stored_energy: extensions.energy.and_then(|t| t.stored),
         serial: None,
     })
+}
+
+/// The tables of the extensions that the engine knows.
+struct Extensions {
+    tangent: Option<&'static lahar_tangent_extension>,
+    energy: Option<&'static lahar_energy_extension>,
+    transfer: Vec<i32>,
+}
+
+impl Extensions {
+    /// # Safety
+    ///
+    /// As for [`read_plugin`].
+    unsafe fn read(desc: &lahar_model_desc, place: &Place<'_>) -> Result<Self> {
+        // SAFETY: told by the caller; a table of an id is of the type that the ABI names.
+        let (tangent, energy, transfer) = unsafe {
+            (
+                table_of::<lahar_tangent_extension>(desc, c"lahar.tangent", place)?,
+                table_of::<lahar_energy_extension>(desc, c"lahar.energy", place)?,
+                table_of::<lahar_transfer_extension>(desc, c"lahar.transfer", place)?,
+            )
+        };
+        place.ensure(tangent.is_none_or(|t| t.tangent.is_some()), || {
+            "expected a function in `lahar.tangent`, got NULL".into()
+        })?;
+        place.ensure(energy.is_none_or(|t| t.stored.is_some()), || {
+            "expected a function in `lahar.energy`, got NULL".into()
+        })?;
+        let declared = desc.capabilities & LAHAR_CAPABILITY_TANGENT != 0;
+        place.ensure(declared == tangent.is_some(), || {
+            let (says, gives) = if declared { ("", "not ") } else { ("not ", "") };
+            format!(
+                "LAHAR_CAPABILITY_TANGENT is {says}declared, but `lahar.tangent` is {gives}offered"
+            )
+        })?;
+        let transfer = match transfer {
+            None => Vec::new(),
+            Some(t) => {
+                // SAFETY: told by the caller.
+                let rules =
+                    unsafe { place.entries("transfer rules", t.rules, t.count, size_of::<i32>()) }?;
+                rules.into_iter().copied().collect()
+            }
+        };
+        Ok(Self { tangent, energy, transfer })
+    }
+
+    /// One rule per state variable.
+    fn rules(&self, states: usize, place: &Place<'_>) -> Result<Vec<Transfer>> {
+        let given = self.transfer.len();
+        place.ensure(given == 0 || given == states, || {
+            format!("expected {states} rules in `lahar.transfer`, got {given}")
+        })?;
+        let rule = |rule: &i32| match *rule {
+            LAHAR_TRANSFER_MEAN => Ok(Transfer::Mean),
+            LAHAR_TRANSFER_MAX => Ok(Transfer::Max),
+            LAHAR_TRANSFER_NEVER => Ok(Transfer::Never),
+            other => Err(place.error(format!("expected transfer rules 0 to 2, got {other}"))),
+        };
+        self.transfer.iter().map(rule).collect()
+    }
+}
+
+/// The table of an extension; None if the model does not offer it.
+///
+/// # Safety
+///
+/// As for [`read_plugin`]; the table of `id` is a `T`.
+unsafe fn table_of<T>(
+    desc: &lahar_model_desc,
+    id: &CStr,
+    place: &Place<'_>,
+) -> Result<Option<&'static T>> {
+    let Some(get_extension) = desc.get_extension else { return Ok(None) };
+    // SAFETY: the id ends with a NUL; loading is exclusive.
+    let table = unsafe { get_extension(id.as_ptr()) }.cast::<T>();
+    if table.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: told by the caller.
+    unsafe { place.inside(format!("{}, extension {id:?}", place.at)).table(table) }.map(Some)
 }
 
 fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>> {
@@ -303,10 +409,16 @@ fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>>
         let input = match **input {
             LAHAR_INPUT_DENSITY => Input::Density,
             LAHAR_INPUT_ELEMENT_LENGTH => Input::ElementLength,
+            LAHAR_INPUT_TEMPERATURE => Input::Temperature,
+            LAHAR_INPUT_INTERNAL_ENERGY => Input::InternalEnergy,
+            LAHAR_INPUT_PORE_PRESSURE => Input::PorePressure,
+            LAHAR_INPUT_POSITION_X => Input::PositionX,
+            LAHAR_INPUT_POSITION_Y => Input::PositionY,
+            LAHAR_INPUT_POSITION_Z => Input::PositionZ,
+            LAHAR_INPUT_PARTICLE_ID => Input::ParticleId,
             other => {
                 return Err(place.error(format!(
-                    "it wants input {other}; this library offers {LAHAR_INPUT_DENSITY} (density) and \
-                     {LAHAR_INPUT_ELEMENT_LENGTH} (element length)"
+                    "it wants input {other}; this library offers 1 (density) to 9 (particle id)"
                 )));
             }
         };
@@ -442,6 +554,7 @@ unsafe fn read_state(
         description_c: description.c,
         kind,
         rotation,
+        transfer: Transfer::Mean,
         initial: desc.initial,
     })
 }

@@ -1,6 +1,6 @@
 //! The engine's side of the plugin ABI; all of the engine's `unsafe` that concerns plugins is in this folder.
 //!
-//! `load` finds and opens a library, `register` takes the table of a plugin that is linked in, `handshake` checks its tables and copies them into safe descriptions, `adapter`
+//! `load` finds and opens a library, `register` takes the entry of a plugin that is linked in, `handshake` checks its tables and copies them into safe descriptions, `adapter`
 //! calls its functions with batches, `host` is the table of functions that a plugin gets.
 
 mod adapter;
@@ -11,4 +11,5 @@ mod register;
 
 pub(crate) use adapter::{Functions, Instance};
 pub(crate) use load::load;
-pub(crate) use register::{StaticTable, register};
+pub use register::RustEntry;
+pub(crate) use register::{StaticEntry, register};

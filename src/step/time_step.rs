@@ -82,14 +82,9 @@ fn limits_of_chunk<const D: usize>(
                 &particles.column(layout.deformation_gradient + c)[first..first + n],
             );
         }
-        for k in 0..n {
-            s.set_inputs(
-                k,
-                particles.column(layout.mass)[first + k]
-                    / particles.column(layout.volume)[first + k],
-                spacing,
-            );
-        }
+        let column = |c: usize| &particles.column(c)[first..first + n];
+        s.fill_density(&layout, column);
+        s.fill_inputs(&layout, column, &particles.id[first..first + n], spacing);
         let mut batch = StressBatch { dt: 0.0, time: 0.0, ..s.batch() };
         body.material.wave_speed(&mut batch)?;
         let mut limits = Limits::default();

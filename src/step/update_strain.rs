@@ -5,7 +5,7 @@
 //! of the midpoint rule there, which makes the Jaumann rate, or by the increment of the rotation R in F = R U, which makes that of
 //! A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965) 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
 
-use crate::material::{Kinematics, Rotation};
+use crate::material::{Input, Kinematics, Rotation};
 use crate::particles::ChunkMut;
 use crate::simd::{Kernel, LANES, Vector, each};
 use crate::tensor::{
@@ -31,6 +31,9 @@ pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
         false => piece.isa.dispatch(Strain::<D, false>(piece, dt)),
         true => piece.isa.dispatch(Strain::<D, true>(piece, dt)),
     }
+    let Piece { chunk, scratch, ids, space, .. } = piece;
+    let ids = &ids[chunk.first..][..chunk.len];
+    scratch.fill_inputs(&chunk.layout, |c| chunk.column(c), ids, space.spacing);
     piece.lap(ChunkStage::Strained);
 }
 
@@ -133,11 +136,10 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
             let ratio = if F { growth(&l, dt) } else { exp(trace) }; // [STR-3]
             let new = V::load(volume) * ratio;
             new.store(volume);
-            if !scratch.density.is_empty() {
-                (mass / new).store(&mut scratch.density[k..][..LANES]);
+            if let Some(density) = scratch.input(Input::Density) {
+                (mass / new).store(&mut density[k..][..LANES]);
             }
         }
-        scratch.element_length.fill(piece.space.spacing);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Place, Result};
-use crate::material::Material;
+use crate::material::{Input, Material};
 use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
 use crate::shape::ShapeKind;
@@ -17,6 +17,9 @@ use super::state::{Body, Sizes, State};
 
 /// Most particles of a body.
 const MOST: usize = u32::MAX as usize - 1;
+
+/// Temperature of new particles whose model wants it [K].
+const ROOM_TEMPERATURE: f64 = 293.15;
 
 impl<const D: usize> State<D> {
     /// Adds a body with the given id from arrays; on error nothing changes.
@@ -137,6 +140,8 @@ impl<const D: usize> State<D> {
         let Options { shape, transfer, body_force, .. } = self.options;
         let gradient = material.model().kinematics.carries_deformation_gradient();
         Extras {
+            temperature: material.model().input(Input::Temperature).is_some(),
+            pore_pressure: material.model().input(Input::PorePressure).is_some(),
             dilation: false,
             size: shape.is_sized(),
             body_force,
@@ -164,6 +169,10 @@ impl<const D: usize> State<D> {
     }
 
     fn insert(&mut self, mut body: Body) -> Result<()> {
+        let layout = body.particles.layout;
+        if body.material.model().input(Input::Temperature).is_some() {
+            body.particles.column_mut(layout.temperature).fill(ROOM_TEMPERATURE);
+        }
         self.check_particles(&body)?;
         init_state(&mut body, self.options.spacing)?;
         self.check_particles(&body)?;
@@ -317,10 +326,10 @@ pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
     for start in (0..particles.len()).step_by(CHUNK) {
         let n = CHUNK.min(particles.len() - start);
         with_scratch(material, n, |s| {
+            let column = |c: usize| &particles.column(c)[start..start + n];
+            s.fill_density(&layout, column);
+            s.fill_inputs(&layout, column, &particles.id[start..start + n], spacing);
             for k in 0..n {
-                let [mass] = particles.get::<1>(layout.mass, start + k);
-                let [volume] = particles.get::<1>(layout.volume, start + k);
-                s.set_inputs(k, mass / volume, spacing);
                 for c in 0..6 {
                     s.stress0[c * s.stride + k] = particles.column(layout.stress + c)[start + k];
                 }

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY};
 
 use crate::grid::TileNode;
-use crate::material::{Input, Kinematics, Material, StressBatch};
-use crate::particles::{Aligned, CHUNK, stride_of};
+use crate::material::{Input, Kinematics, Material, Model, StressBatch};
+use crate::particles::{Aligned, CHUNK, Layout, stride_of};
 
 /// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
 pub struct Scratch<'a> {
@@ -28,10 +28,8 @@ pub struct Scratch<'a> {
     pub state0: &'a mut [f64],
     /// State at the end.
     pub state1: &'a mut [f64],
-    /// Density at the end [kg/m³].
-    pub density: &'a mut [f64],
-    /// Grid spacing [m].
-    pub element_length: &'a mut [f64],
+    /// The inputs that the model wants.
+    pub inputs: &'a mut [f64],
     /// Wave speed [m/s].
     pub wave_speed: &'a mut [f64],
     /// Kinematic diffusivity [m²/s].
@@ -42,18 +40,57 @@ pub struct Scratch<'a> {
     pub dt_factor: &'a mut [f64],
     /// Status per point.
     pub status: &'a mut [i32],
-    kinematics: Kinematics,
+    model: &'static Model,
 }
 
 impl Scratch<'_> {
-    /// Sets the wanted inputs of point k: density [kg/m³] and element length [m].
+    /// Values of an input; none if the model does not want it.
     #[inline(always)]
-    pub fn set_inputs(&mut self, k: usize, density: f64, element_length: f64) {
-        if let Some(slot) = self.density.get_mut(k) {
-            *slot = density;
+    pub fn input(&mut self, input: Input) -> Option<&mut [f64]> {
+        let place = self.model.input(input)?;
+        Some(&mut self.inputs[place * self.stride..][..self.stride])
+    }
+
+    /// Fills the inputs that the model wants, but density, from columns of particles.
+    pub fn fill_inputs<'c>(
+        &mut self,
+        layout: &Layout,
+        column: impl Fn(usize) -> &'c [f64],
+        ids: &[i64],
+        spacing: f64,
+    ) {
+        let (n, stride) = (self.n, self.stride);
+        for (values, input) in self.inputs.chunks_mut(stride).zip(&self.model.inputs) {
+            let values = &mut values[..n];
+            let axes = layout.velocity - layout.position;
+            match input {
+                Input::Density => {}
+                Input::ElementLength => values.fill(spacing),
+                Input::Temperature => values.copy_from_slice(column(layout.temperature)),
+                Input::PorePressure => values.copy_from_slice(column(layout.pore_pressure)),
+                Input::InternalEnergy => {
+                    let pairs = column(layout.strain_energy).iter().zip(column(layout.mass));
+                    values.iter_mut().zip(pairs).for_each(|(value, (energy, mass))| {
+                        *value = energy / mass;
+                    });
+                }
+                Input::PositionZ if axes < 3 => values.fill(0.0),
+                Input::PositionX | Input::PositionY | Input::PositionZ => {
+                    let axis = *input as usize - Input::PositionX as usize;
+                    values.copy_from_slice(column(layout.position + axis));
+                }
+                Input::ParticleId => {
+                    values.iter_mut().zip(ids).for_each(|(value, id)| *value = *id as f64);
+                }
+            }
         }
-        if let Some(slot) = self.element_length.get_mut(k) {
-            *slot = element_length;
+    }
+
+    /// Fills the density from columns of particles, if the model wants it.
+    pub fn fill_density<'c>(&mut self, layout: &Layout, column: impl Fn(usize) -> &'c [f64]) {
+        if let Some(density) = self.input(Input::Density) {
+            let pairs = column(layout.mass).iter().zip(column(layout.volume));
+            density.iter_mut().zip(pairs).for_each(|(value, (m, v))| *value = m / v);
         }
     }
 
@@ -65,14 +102,15 @@ impl Scratch<'_> {
     /// The batch that the material sees, with `dt` and `time` zero.
     pub fn batch(&mut self) -> StressBatch<'_> {
         let asked = |wanted, slice| if wanted { slice } else { &[][..] };
-        let velocity_gradient = self.kinematics == Kinematics::VelocityGradient;
+        let velocity_gradient = self.model.kinematics == Kinematics::VelocityGradient;
         StressBatch {
             n: self.n,
             stride: self.stride,
             dt: 0.0,
             time: 0.0,
+            step: -1,
             strain_increment: asked(
-                self.kinematics.takes_strain_increment(),
+                self.model.kinematics.takes_strain_increment(),
                 &*self.strain_increment,
             ),
             velocity_gradient: asked(velocity_gradient, &*self.velocity_gradient),
@@ -81,8 +119,7 @@ impl Scratch<'_> {
             state0: &*self.state0,
             stress1: &mut *self.stress1,
             state1: &mut *self.state1,
-            density: &*self.density,
-            element_length: &*self.element_length,
+            inputs: &*self.inputs,
             wave_speed: &mut *self.wave_speed,
             diffusivity: &mut *self.diffusivity,
             energy: &mut *self.energy,
@@ -138,7 +175,6 @@ impl Points {
         let model = material.model();
         let stride = stride_of(n);
         let state = model.state_components();
-        let wants = |input| usize::from(model.inputs.contains(&input));
         let gives = |output| usize::from(model.outputs & output != 0);
         let gradient = if model.kinematics == Kinematics::DeformationGradient { 9 } else { 0 };
         let sizes = [
@@ -149,8 +185,7 @@ impl Points {
             6,
             state,
             state,
-            wants(Input::Density),
-            wants(Input::ElementLength),
+            model.inputs.len(),
             1,
             gives(LAHAR_OUTPUT_DIFFUSIVITY),
             gives(LAHAR_OUTPUT_ENERGY),
@@ -184,14 +219,13 @@ impl Points {
             stress1: take(),
             state0: take(),
             state1: take(),
-            density: take(),
-            element_length: take(),
+            inputs: take(),
             wave_speed: take(),
             diffusivity: take(),
             energy: take(),
             dt_factor: take(),
             status,
-            kinematics: model.kinematics,
+            model,
         }
     }
 }

@@ -326,6 +326,7 @@ impl<const D: usize> State<D> {
         let space = self.space();
         let tile_nodes = self.tiles.tile_nodes(D);
         let Self { bodies, grid, options, kernels, context, time, parallel, stopwatch, .. } = self;
+        let step = self.step_count;
         let mut outcome = Outcome::default();
         for body in bodies {
             let Body { id, material, particles, runs, .. } = body;
@@ -355,6 +356,7 @@ impl<const D: usize> State<D> {
                             axisymmetric: options.axisymmetric,
                             resize: options.shape == ShapeKind::ContiguousGimp,
                             time: *time,
+                            step,
                             stopwatch: stopwatch.as_deref(),
                         };
                         piece.lap(ChunkStage::Start);
@@ -423,6 +425,8 @@ pub struct Piece<'c, 's, const D: usize> {
     pub resize: bool,
     /// Time at the start of the step [s].
     pub time: f64,
+    /// Number of steps before this one.
+    pub step: i64,
     stopwatch: Option<&'s Stopwatch>,
 }
 

@@ -1,4 +1,4 @@
 /* An input that this engine does not offer. */
 #include "minimal.h"
 
-static void spoil(void) { inputs[0] = LAHAR_INPUT_TEMPERATURE; }
+static void spoil(void) { inputs[0] = 12; }

@@ -41,9 +41,9 @@ static void context_functions(void) {
   NULL_IGNORED(lahar_log_stderr, user, (LAHAR_LOG_ERROR, NULL, NULL));
   NULL_REFUSED(lahar_context_load_plugin, context, (NULL, "x", &integer));
   NULL_REFUSED(lahar_context_load_plugin, name_or_path, (context, NULL, &integer));
-  NULL_REFUSED(lahar_context_register_plugin, context, (NULL, lahar_plugin_entry_v1(NULL), &integer));
-  NULL_REFUSED(lahar_context_register_plugin, plugin, (context, NULL, &integer));
-  NULL_ALLOWED(lahar_context_register_plugin, index, (context, lahar_plugin_entry_v1(NULL), NULL));
+  NULL_REFUSED(lahar_context_register_plugin, context, (NULL, lahar_plugin_entry_v1, &integer));
+  EXPECT(lahar_context_register_plugin(context, NULL, &integer), LAHAR_ERROR_NULL_ARGUMENT, "`plugin` is NULL");
+  NULL_ALLOWED(lahar_context_register_plugin, index, (context, lahar_plugin_entry_v1, NULL));
   NULL_REFUSED(lahar_context_plugin_count, context, (NULL, &integer));
   NULL_REFUSED(lahar_context_plugin_count, plugins, (context, NULL));
   plugin.struct_size = sizeof plugin;

@@ -3,7 +3,7 @@
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
 use lahar::error::Status;
-use lahar::material::{Material, StressBatch};
+use lahar::material::{Input, Material, StressBatch};
 use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::simd::Isa;
 use lahar::step::StepOrder;
@@ -60,7 +60,7 @@ fn updated_stress(
             s.stress0[c * s.stride] = rotated[c];
             s.strain_increment[c * s.stride] = strain[c];
         }
-        s.set_inputs(0, density, H);
+        s.input(Input::Density).expect("the model wants it")[0] = density;
         material.update(&mut StressBatch { dt, ..s.batch() }).expect("the model works");
         std::array::from_fn(|c| s.stress1[c * s.stride])
     })

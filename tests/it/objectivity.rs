@@ -20,7 +20,7 @@ const LAMBDA: f64 = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU));
 fn block(dimension: usize, model: &str, isa: Isa) -> Block {
     let context = context_with(1, isa);
     if model == Follower::NAME.to_str().unwrap() {
-        context.register_plugin(FOLLOWER.desc()).expect("a good table");
+        context.register_plugin(|host| FOLLOWER.entered(host)).expect("a good table");
     }
     let values: &[(&str, f64)] = match model {
         "follower" => &[],

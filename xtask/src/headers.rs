@@ -79,8 +79,10 @@ fn host_header(root: &Path) -> Result<String, String> {
         let path = root.join(format!("src/ffi/{section}.rs"));
         write_section(&mut text, section, &path, &not_in_functions)?;
     }
-    // A typedef of lahar_plugin.h, which may be included after this header or not at all.
-    text = text.replace("const lahar_plugin_desc *", "const struct lahar_plugin_desc *");
+    // Typedefs of lahar_plugin.h, which may be included after this header or not at all.
+    for name in ["lahar_plugin_desc", "lahar_host_api"] {
+        text = text.replace(&format!("const {name} *"), &format!("const struct {name} *"));
+    }
     let layout = read(&root.join("src/ffi/layout.rs"))?;
     text += &asserts(&layout, "super::public")?;
     text += &closing("LAHAR_H");
@@ -253,8 +255,7 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
 
 "#;
 
-const PLUGIN_TABLE: &str =
-    "\n// The table of a plugin, defined in lahar_plugin.h.\nstruct lahar_plugin_desc;\n";
+const PLUGIN_TABLE: &str = "\n// The tables of plugins and of the engine, defined in lahar_plugin.h.\nstruct lahar_plugin_desc;\nstruct lahar_host_api;\n";
 
 const PLUGIN_INTRODUCTION: &str = r#"/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
  *
@@ -272,9 +273,18 @@ const PLUGIN_ENTRY: &str = r#"
 #define LAHAR_PLUGIN_EXPORT
 #endif
 
+// Ids of extensions.
+#define LAHAR_EXTENSION_TANGENT "lahar.tangent"
+#define LAHAR_EXTENSION_ENERGY "lahar.energy"
+#define LAHAR_EXTENSION_TRANSFER "lahar.transfer"
+
 // The one function that a plugin defines: its tables, or NULL to refuse, after `set_error`.
-// [one thread at a time, once in a process]
+// [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
+
+// Defined by adapters beside the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// [exclusive; once for each library, again only after it has refused]
+LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 "#;
 
 const ASSERTS_OPEN: &str = r#"/* ---- layout: what the library was built with, on 64-bit systems */

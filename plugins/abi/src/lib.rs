@@ -8,9 +8,19 @@
 //! components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
 //! gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
 //!
-//! Thread rule: `lahar_plugin_entry_v1`, `create`, `destroy` and `check` are called by one thread at a time; `init_state`,
-//! `update` and `wave_speed` may be called from several threads on the same instance, unless the model does not
-//! declare `LAHAR_CAPABILITY_THREAD_SAFE`. No function may unwind, `longjmp`, exit or print.
+//! Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
+//! extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
+//!
+//! * `[exclusive]`: one call at a time in the whole process, on any thread;
+//! * `[concurrent]`: on any thread, at the same time as other calls on the same instance, unless the model does not declare
+//!   `LAHAR_CAPABILITY_THREAD_SAFE`: then one call at a time over all such models of the library.
+//!
+//! No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
+//! may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
+//!
+//! Versions: tables grow only at their ends, and both sides tell their minor version. A plugin that needs a newer engine says so in
+//! `required_minor` of the model, or refuses in its entry after a look at `abi_minor` of the host table. An engine takes tables that
+//! are longer than it knows, and fills a batch as far as its own `struct_size`.
 #![no_std]
 #![allow(non_camel_case_types)]
 
@@ -57,20 +67,30 @@ pub const LAHAR_ROTATION_OBJECTIVE: i32 = 1;
 pub const LAHAR_INPUT_DENSITY: i32 = 1;
 /// Input: a length of the discretisation, the grid spacing [m].
 pub const LAHAR_INPUT_ELEMENT_LENGTH: i32 = 2;
-/// Input: temperature [K]. No engine of minor 0 offers it.
+/// Input: temperature [K], the particle field `temperature` of the host.
 pub const LAHAR_INPUT_TEMPERATURE: i32 = 3;
-/// Input: specific internal energy [J/kg]. No engine of minor 0 offers it.
+/// Input: specific internal energy at the start of the step [J/kg]: the particle field `strain_energy` over the mass. The field follows the
+/// work of the stress, or the output `energy` of a model that gives it.
 pub const LAHAR_INPUT_INTERNAL_ENERGY: i32 = 4;
-/// Input: pore pressure [Pa]. No engine of minor 0 offers it.
+/// Input: pore pressure, compression positive [Pa], the particle field `pore_pressure` of the host.
 pub const LAHAR_INPUT_PORE_PRESSURE: i32 = 5;
+/// Input: x of the position [m].
+pub const LAHAR_INPUT_POSITION_X: i32 = 6;
+/// Input: y of the position [m].
+pub const LAHAR_INPUT_POSITION_Y: i32 = 7;
+/// Input: z of the position [m]; 0 in plane strain.
+pub const LAHAR_INPUT_POSITION_Z: i32 = 8;
+/// Input: id of the particle inside its body, counted from 0 [-].
+pub const LAHAR_INPUT_PARTICLE_ID: i32 = 9;
 
 /// Output: speed of the fastest wave [m/s]; every model must give it.
 pub const LAHAR_OUTPUT_WAVE_SPEED: u64 = 1;
 /// Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
 pub const LAHAR_OUTPUT_DIFFUSIVITY: u64 = 2;
-/// Output: stored energy per current volume at the end of the step [J/m^3]; replaces the engine's work integral.
+/// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces the engine's work integral.
 pub const LAHAR_OUTPUT_ENERGY: u64 = 4;
-/// Output: factor by which the model wants the next time step changed, in (0, 1] [-].
+/// Output: factor by which the model wants the time step changed, in (0, 1] [-]. Below 1 the engine repeats the step smaller if the host
+/// allows that, else it shortens the next one.
 pub const LAHAR_OUTPUT_DT_FACTOR: u64 = 8;
 /// Output: one of the `LAHAR_POINT_*` per point.
 pub const LAHAR_OUTPUT_STATUS: u64 = 16;
@@ -83,14 +103,25 @@ pub const LAHAR_CAPABILITY_POINTWISE: u64 = 2;
 pub const LAHAR_CAPABILITY_DETERMINISTIC: u64 = 4;
 /// The extension `lahar.tangent` is offered.
 pub const LAHAR_CAPABILITY_TANGENT: u64 = 8;
+/// The model may end the process (`STOP` of legacy code); the engine warns when it loads the plugin.
+pub const LAHAR_CAPABILITY_MAY_STOP: u64 = 16;
+/// The model may print (legacy code); the engine warns when it loads the plugin.
+pub const LAHAR_CAPABILITY_MAY_PRINT: u64 = 32;
+
+/// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split copies.
+pub const LAHAR_TRANSFER_MEAN: i32 = 0;
+/// Transfer rule: the largest, component by component.
+pub const LAHAR_TRANSFER_MAX: i32 = 1;
+/// Transfer rule: points that differ in it are not merged.
+pub const LAHAR_TRANSFER_NEVER: i32 = 2;
 
 /// The point is updated.
 pub const LAHAR_POINT_OK: i32 = 0;
 /// The point is updated, but the result is less accurate than promised.
 pub const LAHAR_POINT_UNRELIABLE: i32 = 1;
-/// The point is updated, but the model wants a smaller step.
+/// The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
 pub const LAHAR_POINT_SMALLER_STEP: i32 = 2;
-/// The point could not be updated.
+/// The point could not be updated; its end is not used.
 pub const LAHAR_POINT_FAILED: i32 = 3;
 
 /// Return value of a plugin function: done.
@@ -98,10 +129,16 @@ pub const LAHAR_PLUGIN_OK: i32 = 0;
 /// Return value of a plugin function: not done; `set_error` of the host table may say why.
 pub const LAHAR_PLUGIN_ERROR: i32 = 1;
 
-/// Levels of `lahar_host_api.log`, those of `lahar.h`: 0 error, 1 warning, 2 information, 3 detail.
+/// Level of `lahar_host_api.log`: something failed.
+pub const LAHAR_PLUGIN_LOG_ERROR: i32 = 0;
+/// Level: something is unusual.
 pub const LAHAR_PLUGIN_LOG_WARNING: i32 = 1;
+/// Level: milestones.
+pub const LAHAR_PLUGIN_LOG_INFORMATION: i32 = 2;
+/// Level: details for finding a fault.
+pub const LAHAR_PLUGIN_LOG_DETAIL: i32 = 3;
 
-/// What the engine offers to a plugin. Valid for the life of the process. Every function may be called from any thread.
+/// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only members inside `struct_size`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_host_api {
@@ -109,11 +146,13 @@ pub struct lahar_host_api {
     pub struct_size: u32,
     /// Minor version of the ABI that the engine speaks.
     pub abi_minor: u32,
-    /// Hands a line to the host's log. `level` as in `lahar.h`; `message` is copied.
+    /// Hands a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is copied. Heard while a function of the
+    /// plugin runs. [concurrent]
     pub log: Option<unsafe extern "C" fn(level: i32, message: *const c_char)>,
     /// Sets the text that explains why the function that is running returns an error; `message` is copied.
+    /// [concurrent]
     pub set_error: Option<unsafe extern "C" fn(message: *const c_char)>,
-    /// 1 if the host wants long work to end, else 0.
+    /// 1 if the host wants long work to end, else 0. [concurrent]
     pub should_stop: Option<unsafe extern "C" fn() -> i32>,
 }
 
@@ -133,7 +172,7 @@ pub struct lahar_parameter_desc {
     pub kind: i32,
     /// 1: the host must give it; 0: `default_value` is used.
     pub required: i32,
-    /// Value if the host gives none.
+    /// Value if the host gives none, inside the hard bounds. Of a required parameter a typical value, with which tools try the model.
     pub default_value: f64,
     /// Smallest value that is accepted; -infinity for none.
     pub hard_min: f64,
@@ -181,6 +220,8 @@ pub struct lahar_stress_batch {
     pub dt: f64,
     /// Time at the start of the step [s].
     pub time: f64,
+    /// Number of steps before this one; -1 if there is no such count.
+    pub step: i64,
     /// Strain increment dt sym L, 6 components [-]; NULL unless the kinematics ask for it.
     pub strain_increment: *const f64,
     /// Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
@@ -201,7 +242,7 @@ pub struct lahar_stress_batch {
     pub wave_speed: *mut f64,
     /// Kinematic diffusivity [m^2/s]; NULL unless declared.
     pub diffusivity: *mut f64,
-    /// Stored energy per current volume [J/m^3]; NULL unless declared.
+    /// Energy per current volume [J/m^3]; NULL unless declared.
     pub energy: *mut f64,
     /// Wanted factor on the next time step [-]; NULL unless declared.
     pub dt_factor: *mut f64,
@@ -237,21 +278,23 @@ pub struct lahar_model_desc {
     pub states: *const lahar_state_desc,
     /// Number of wanted inputs.
     pub input_count: u32,
-    /// 0.
-    pub reserved: u32,
+    /// Smallest minor version of the engine with which the model works; 0 for any.
+    pub required_minor: u32,
     /// The wanted inputs, `LAHAR_INPUT_*`; NULL if there are none.
     pub inputs: *const i32,
     /// Sum of `LAHAR_OUTPUT_*`; `LAHAR_OUTPUT_WAVE_SPEED` is mandatory.
     pub outputs: u64,
     /// Sum of `LAHAR_CAPABILITY_*`.
     pub capabilities: u64,
-    /// Makes an instance from one value per parameter. Mandatory. [one thread at a time]
+    /// Makes an instance from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
+    /// `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
     pub create: Option<
         unsafe extern "C" fn(values: *const f64, count: i64, instance: *mut *mut c_void) -> i32,
     >,
-    /// Frees an instance. Mandatory. [one thread at a time]
+    /// Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     pub destroy: Option<unsafe extern "C" fn(instance: *mut c_void)>,
-    /// Says whether the values go together; if not, writes a NUL-terminated sentence. May be NULL. [one thread at a time]
+    /// Says whether the values go together; if not, writes a NUL-terminated sentence into `capacity` bytes. May be NULL.
+    /// [exclusive; before create]
     pub check: Option<
         unsafe extern "C" fn(
             values: *const f64,
@@ -261,20 +304,76 @@ pub struct lahar_model_desc {
         ) -> i32,
     >,
     /// Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
+    /// [concurrent; between create and destroy]
     pub init_state: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// One step of all points of the batch. Mandatory. [several threads]
+    /// One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of every point. Mandatory. A point that
+    /// fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for a batch that makes no sense. [concurrent; between create and destroy]
     pub update: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
     /// Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
-    /// deformation gradient. Mandatory. [several threads]
+    /// deformation gradient. Mandatory. [concurrent; between create and destroy]
     pub wave_speed: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// A table for the extension `id`, or NULL. May be NULL. [any thread]
+    /// A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
+    /// (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
+    /// begin with. [exclusive; after the entry]
     pub get_extension: Option<unsafe extern "C" fn(id: *const c_char) -> *const c_void>,
+}
+
+/// Extension `lahar.tangent`, offered together with `LAHAR_CAPABILITY_TANGENT`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_tangent_extension {
+    /// Size of this table in bytes, as the plugin knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of point `k`, at
+    /// `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component i by strain increment component j. A shear
+    /// component of the increment stands for both of its places, so that elasticity has 2 G there. Outputs of the batch may be NULL.
+    /// [concurrent; between create and destroy]
+    pub tangent: Option<
+        unsafe extern "C" fn(
+            instance: *const c_void,
+            batch: *const lahar_stress_batch,
+            tangent: *mut f64,
+        ) -> i32,
+    >,
+}
+
+/// Extension `lahar.energy`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_energy_extension {
+    /// Size of this table in bytes, as the plugin knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Energy per current volume [J/m^3], one value per point, that can be had back from `stress0`, `state0` and, if the kinematics ask for
+    /// it, the deformation gradient. Outputs of the batch may be NULL. [concurrent; between create and destroy]
+    pub stored: Option<
+        unsafe extern "C" fn(
+            instance: *const c_void,
+            batch: *const lahar_stress_batch,
+            energy: *mut f64,
+        ) -> i32,
+    >,
+}
+
+/// Extension `lahar.transfer`: what becomes of state variables when points are merged. Without it every rule is the mean.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct lahar_transfer_extension {
+    /// Size of this table in bytes, as the plugin knows it.
+    pub struct_size: u32,
+    /// Number of rules, which is the number of state variables.
+    pub count: u32,
+    /// One `LAHAR_TRANSFER_*` per state variable.
+    pub rules: *const i32,
 }
 
 /// What a plugin is. All pointers must stay valid for the life of the process.
@@ -303,10 +402,20 @@ pub struct lahar_plugin_desc {
     pub models: *const *const lahar_model_desc,
 }
 
-/// Type of the function `lahar_plugin_entry_v1`, the only symbol that the engine looks for. NULL refuses, after `set_error`.
-/// [one thread at a time; once in a process, again only after it has refused]
+/// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after `set_error`.
+/// [exclusive; once in a process, again only after it has refused]
 pub type lahar_plugin_entry =
     Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
+
+/// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports beside its entry: it makes a plugin of the foreign library at `path`
+/// (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
+/// after it has refused]
+pub type lahar_plugin_adapt = Option<
+    unsafe extern "C" fn(
+        host: *const lahar_host_api,
+        path: *const c_char,
+    ) -> *const lahar_plugin_desc,
+>;
 
 // SAFETY: the tables hold pointers to immutable data of static lifetime and function pointers; the contract above says
 // from which threads the functions are called.
@@ -317,3 +426,5 @@ unsafe impl Sync for lahar_model_desc {}
 unsafe impl Sync for lahar_parameter_desc {}
 // SAFETY: as above.
 unsafe impl Sync for lahar_state_desc {}
+// SAFETY: as above.
+unsafe impl Sync for lahar_transfer_extension {}

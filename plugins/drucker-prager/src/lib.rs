@@ -8,6 +8,7 @@
 mod cone;
 
 use cone::{Cone, ConeKind};
+use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
@@ -24,9 +25,9 @@ pub static PLUGIN: Plugin = Plugin::new(
 .author(c"The lahar developers")
 .licence(c"MIT OR Apache-2.0");
 
-/// The table of the plugin, for programs that link the model statically.
-pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
-    PLUGIN.desc()
+/// The entry of the plugin, for programs that link the model statically.
+pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+    PLUGIN.entered(host)
 }
 
 /// `n` points for a bench: sheared under pressure, all of them in plastic flow, different in each point.
@@ -64,14 +65,18 @@ impl Model for DruckerPrager {
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
+            .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
+            .typical(0.3)
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
         Parameter::real(c"friction_angle", c"phi", c"deg", c"Mohr-Coulomb friction angle")
+            .typical(30.0)
             .hard(0.0, 89.0)
             .advised(0.0, 55.0),
         Parameter::real(c"cohesion", c"c", c"Pa", c"Mohr-Coulomb cohesion")
+            .typical(1.0e3)
             .hard(0.0, f64::INFINITY),
         Parameter::real(c"dilation_angle", c"psi", c"deg", c"Dilation angle, at most phi")
             .default(0.0)

@@ -1,16 +1,14 @@
 //! Hencky elasticity: the Kirchhoff stress J σ = λ tr(ε) I + 2 μ ε of the logarithmic strain ε = ½ ln b, b = F Fᵀ.
 #![forbid(unsafe_code)]
 
-mod principal;
-
+use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
 use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text,
+    PointLaw, PointStatus, State, Updated, c_text, principal,
 };
-use principal::principal;
 use std::ffi::CStr;
 
 /// The plugin with this model.
@@ -22,9 +20,9 @@ pub static PLUGIN: Plugin = Plugin::new(
 .author(c"The lahar developers")
 .licence(c"MIT OR Apache-2.0");
 
-/// The table of the plugin, for programs that link the model statically.
-pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
-    PLUGIN.desc()
+/// The entry of the plugin, for programs that link the model statically.
+pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+    PLUGIN.entered(host)
 }
 
 /// `n` points for a bench, deformed by tens of per cent, different in each point.
@@ -104,8 +102,10 @@ impl Model for Hencky {
     const KINEMATICS: Kinematics = Kinematics::DeformationGradient;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus at small strains")
+            .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio at small strains")
+            .typical(0.3)
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
     ];

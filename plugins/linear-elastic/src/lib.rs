@@ -1,7 +1,8 @@
 //! Isotropic linear elasticity in rate form: Δσ = λ tr(Δε) I + 2 G Δε on the objectively rotated stress.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::elastic::lame;
+use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::tensor::{is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
@@ -18,9 +19,9 @@ pub static PLUGIN: Plugin = Plugin::new(
 .author(c"The lahar developers")
 .licence(c"MIT OR Apache-2.0");
 
-/// The table of the plugin, for programs that link the model statically.
-pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
-    PLUGIN.desc()
+/// The entry of the plugin, for programs that link the model statically.
+pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+    PLUGIN.entered(host)
 }
 
 /// `n` points for a bench, strained and stressed, different in each point.
@@ -56,14 +57,18 @@ impl Model for LinearElastic {
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
+            .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
+            .typical(0.3)
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
     ];
     const STATES: &'static [State] = &[];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
+    const HAS_TANGENT: bool = true;
+    const HAS_STORED_ENERGY: bool = true;
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [e, nu] = values[..] else { return Err("expected 2 values".into()) };
@@ -82,6 +87,14 @@ impl Model for LinearElastic {
         for k in 0..batch.n() {
             batch.set_wave_speed(k, self.wave_speed_of(density[k]));
         }
+    }
+
+    fn tangent(&self, _: &Batch<'_>, _: usize) -> [[f64; 6]; 6] {
+        elastic::stiffness([self.lambda, self.shear_modulus])
+    }
+
+    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
+        elastic::energy([self.lambda, self.shear_modulus], batch.stress0(k))
     }
 }
 
@@ -128,6 +141,8 @@ impl Model for LinearElasticGreenNaghdi {
     const STATES: &'static [State] = LinearElastic::STATES;
     const INPUTS: &'static [Input] = LinearElastic::INPUTS;
     const OUTPUTS: Output = LinearElastic::OUTPUTS;
+    const HAS_TANGENT: bool = true;
+    const HAS_STORED_ENERGY: bool = true;
 
     fn new(values: &[f64]) -> Result<Self, String> {
         LinearElastic::new(values).map(Self)
@@ -141,6 +156,14 @@ impl Model for LinearElasticGreenNaghdi {
     #[inline(always)]
     fn wave_speed(&self, batch: &mut Batch<'_>) {
         self.0.wave_speed(batch);
+    }
+
+    fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
+        self.0.tangent(batch, k)
+    }
+
+    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
+        self.0.stored_energy(batch, k)
     }
 }
 

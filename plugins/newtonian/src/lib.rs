@@ -3,6 +3,7 @@
 
 mod pressure;
 
+use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
 use lahar_plugin::tensor::{deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
@@ -20,9 +21,9 @@ pub static PLUGIN: Plugin = Plugin::new(
 .author(c"The lahar developers")
 .licence(c"MIT OR Apache-2.0");
 
-/// The table of the plugin, for programs that link the model statically.
-pub fn plugin() -> &'static lahar_plugin::abi::lahar_plugin_desc {
-    PLUGIN.desc()
+/// The entry of the plugin, for programs that link the model statically.
+pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+    PLUGIN.entered(host)
 }
 
 /// `n` points for a bench: a viscous fluid in shear under pressure, different in each point; Tait's equation with the
@@ -136,6 +137,7 @@ impl Model for Newtonian {
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"bulk_modulus", c"K", c"Pa", c"Bulk modulus at zero pressure")
+            .typical(2.0e6)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity")
             .default(0.0)

@@ -9,7 +9,7 @@ use std::array;
 use std::slice;
 
 /// Largest number of inputs that a model may want.
-pub const MAX_INPUTS: usize = 8;
+pub const MAX_INPUTS: usize = 12;
 
 /// What became of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +35,7 @@ pub struct Batch<'a> {
     pub(crate) stride: usize,
     dt: f64,
     time: f64,
+    step: i64,
     pub(crate) strain_increment: &'a [f64],
     pub(crate) velocity_gradient: &'a [f64],
     pub(crate) deformation_gradient: &'a [f64],
@@ -83,6 +84,8 @@ pub(crate) enum Call {
     InitState,
     Update,
     WaveSpeed,
+    Tangent,
+    StoredEnergy,
 }
 
 impl<'a> Batch<'a> {
@@ -102,6 +105,12 @@ impl<'a> Batch<'a> {
     #[inline]
     pub fn time(&self) -> f64 {
         self.time
+    }
+
+    /// Number of steps before this one; -1 if there is no such count.
+    #[inline]
+    pub fn step(&self) -> i64 {
+        self.step
     }
 
     /// Strain increment of point `k`, tensor components [-].
@@ -266,6 +275,7 @@ impl<'a> Batch<'a> {
                 stride,
                 dt: raw.dt,
                 time: raw.time,
+                step: raw.step,
                 strain_increment: read(raw.strain_increment, length(6)),
                 velocity_gradient: read(raw.velocity_gradient, length(9)),
                 deformation_gradient: read(raw.deformation_gradient, length(9)),
@@ -291,16 +301,20 @@ impl<'a> Batch<'a> {
         require(self.stress0, n, "stress0")?;
         if call != Call::InitState {
             require(self.state0, n.min(states), "state0")?;
-            require(self.wave_speed, n, "wave_speed")?;
+            if matches!(call, Call::Update | Call::WaveSpeed) {
+                require(self.wave_speed, n, "wave_speed")?;
+            }
             if M::KINEMATICS == Kinematics::DeformationGradient {
                 require(self.deformation_gradient, n, "deformation_gradient")?;
             }
         }
-        if call != Call::WaveSpeed {
+        if matches!(call, Call::InitState | Call::Update) {
             require(self.state1, n.min(states), "state1")?;
         }
         if call == Call::Update {
             require(self.stress1, n, "stress1")?;
+        }
+        if matches!(call, Call::Update | Call::Tangent) {
             let (kinematics, name) = match M::KINEMATICS {
                 Kinematics::VelocityGradient => (self.velocity_gradient, "velocity_gradient"),
                 Kinematics::DeformationGradient => {

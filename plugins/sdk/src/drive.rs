@@ -71,16 +71,31 @@ pub struct Driver {
 
 impl Driver {
     /// An instance from named values (others take their defaults) with `n` points: zero stress, initial state,
-    /// density 1000 kg/m^3, element length 1 m. Errors: unknown or missing parameter, or the model's own refusal.
+    /// density 1000 kg/m^3, element length 1 m, temperature 293.15 K, other inputs 0. Errors: unknown or missing parameter, or the model's own refusal.
     pub fn new(
         model: &'static lahar_model_desc,
         named: &[(&str, f64)],
         n: usize,
     ) -> Result<Self, String> {
-        // SAFETY: the table is static.
-        unsafe { wall::set_host(&HOST) };
-        let values = collect_values(model, named)?;
-        let instance = create(model, &values)?;
+        Self::with_values(model, &collect_values(model, named, false)?, n)
+    }
+
+    /// The same with typical values for required parameters that are not named.
+    pub fn typical(
+        model: &'static lahar_model_desc,
+        named: &[(&str, f64)],
+        n: usize,
+    ) -> Result<Self, String> {
+        Self::with_values(model, &collect_values(model, named, true)?, n)
+    }
+
+    fn with_values(
+        model: &'static lahar_model_desc,
+        values: &[f64],
+        n: usize,
+    ) -> Result<Self, String> {
+        wall::set_host(&HOST);
+        let instance = create(model, values)?;
         let stride = n.next_multiple_of(8);
         let states = states(model);
         let components: usize = states.iter().map(|s| state_size(s.kind)).sum();
@@ -94,10 +109,7 @@ impl Driver {
             stress: [Aligned::new(6 * stride, 0.0), Aligned::new(6 * stride, f64::NAN)],
             state: [Aligned::new(components * stride, 0.0), Aligned::new(components * stride, 0.0)],
             inputs: (0..model.input_count)
-                .map(|i| {
-                    let kind = inputs(model)[i as usize];
-                    Aligned::new(stride, if kind == LAHAR_INPUT_DENSITY { 1000.0 } else { 1.0 })
-                })
+                .map(|i| Aligned::new(stride, usual_input(inputs(model)[i as usize])))
                 .collect(),
             wave_speed: Aligned::new(stride, f64::NAN),
             diffusivity: Aligned::new(stride, f64::NAN),
@@ -194,6 +206,42 @@ impl Driver {
         self.call(wave_speed, 0.0)
     }
 
+    /// The tangent [Pa] of point `k` in the step `dt` [s], from the extension `lahar.tangent`.
+    pub fn tangent(&mut self, k: usize, dt: f64) -> Result<[[f64; 6]; 6], String> {
+        let table: *const lahar_tangent_extension = self.extension(c"lahar.tangent")?;
+        // SAFETY: the table of this id is of this type.
+        let tangent = unsafe { (*table).tangent }.ok_or("the table has no tangent")?;
+        let (instance, stride) = (self.instance, self.stride);
+        let mut out = Aligned::new(36 * stride, f64::NAN);
+        let inputs = self.input_pointers();
+        let batch = self.batch(&inputs, dt);
+        // SAFETY: as in `call`; `out` has 36 components.
+        result(unsafe { tangent(instance, &batch, out.get_mut().as_mut_ptr()) })?;
+        let at = |i: usize, j: usize| out.get()[(6 * i + j) * stride + k];
+        Ok(std::array::from_fn(|i| std::array::from_fn(|j| at(i, j))))
+    }
+
+    /// Energy per current volume [J/m^3] of point `k` at the start, from the extension `lahar.energy`.
+    pub fn stored_energy(&mut self, k: usize) -> Result<f64, String> {
+        let table: *const lahar_energy_extension = self.extension(c"lahar.energy")?;
+        // SAFETY: the table of this id is of this type.
+        let stored = unsafe { (*table).stored }.ok_or("the table has no energy")?;
+        let instance = self.instance;
+        let mut out = Aligned::new(self.stride, f64::NAN);
+        let inputs = self.input_pointers();
+        let batch = self.batch(&inputs, 0.0);
+        // SAFETY: as in `call`; `out` has one value per point.
+        result(unsafe { stored(instance, &batch, out.get_mut().as_mut_ptr()) })?;
+        Ok(out.get()[k])
+    }
+
+    fn extension<T>(&self, id: &CStr) -> Result<*const T, String> {
+        let get = self.model.get_extension.ok_or("the model has no extensions")?;
+        // SAFETY: the id ends with a NUL.
+        let table: *const T = unsafe { get(id.as_ptr()) }.cast();
+        if table.is_null() { Err(format!("the model does not offer {id:?}")) } else { Ok(table) }
+    }
+
     /// Runs `init_state` and makes the result the start state.
     pub fn init_state(&mut self) -> Result<(), String> {
         if let Some(init) = self.model.init_state {
@@ -281,6 +329,7 @@ impl Driver {
             stride: self.stride as i64,
             dt,
             time: 0.0,
+            step: -1,
             strain_increment: strain,
             velocity_gradient: velocity,
             deformation_gradient: deformation,
@@ -335,7 +384,20 @@ fn result(code: i32) -> Result<(), String> {
     if code == LAHAR_PLUGIN_OK { Ok(()) } else { Err(ERROR.take()) }
 }
 
-fn collect_values(model: &lahar_model_desc, named: &[(&str, f64)]) -> Result<Vec<f64>, String> {
+fn usual_input(kind: i32) -> f64 {
+    match kind {
+        LAHAR_INPUT_DENSITY => 1000.0,
+        LAHAR_INPUT_ELEMENT_LENGTH => 1.0,
+        LAHAR_INPUT_TEMPERATURE => 293.15,
+        _ => 0.0,
+    }
+}
+
+fn collect_values(
+    model: &lahar_model_desc,
+    named: &[(&str, f64)],
+    typical: bool,
+) -> Result<Vec<f64>, String> {
     let parameters = parameters(model);
     // SAFETY: keys are NUL-terminated static strings.
     let key = |p: &lahar_parameter_desc| unsafe { CStr::from_ptr(p.key) }.to_string_lossy();
@@ -348,7 +410,7 @@ fn collect_values(model: &lahar_model_desc, named: &[(&str, f64)]) -> Result<Vec
         .iter()
         .map(|p| match named.iter().find(|(name, _)| key(p) == *name) {
             Some((_, value)) => Ok(*value),
-            None if p.required == 0 => Ok(p.default_value),
+            None if p.required == 0 || typical => Ok(p.default_value),
             None => Err(format!("the parameter `{}` is missing", key(p))),
         })
         .collect()

@@ -1,5 +1,7 @@
 //! Constants of isotropic elasticity.
 
+use crate::tensor::{contract, deviator, trace};
+
 /// Lamé's constants λ and μ [Pa] of Young's modulus [Pa] and Poisson's ratio [–]; an error if they are not finite.
 pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> Result<[f64; 2], String> {
     let (e, nu) = (youngs_modulus, poissons_ratio);
@@ -9,4 +11,26 @@ pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> Result<[f64; 2], String
         return Ok([lambda, mu]);
     }
     Err(format!("Young's modulus {e} gives moduli that are not finite"))
+}
+
+/// The isotropic tangent dσ/dε [Pa] of Lamé's constants [Pa], as the extension `lahar.tangent` counts it: 2 μ on the shear diagonal.
+#[inline(always)]
+pub fn stiffness([lambda, mu]: [f64; 2]) -> [[f64; 6]; 6] {
+    let mut c = [[0.0; 6]; 6];
+    for i in 0..6 {
+        c[i][i] = 2.0 * mu;
+        for j in 0..3 {
+            if i < 3 {
+                c[i][j] += lambda;
+            }
+        }
+    }
+    c
+}
+
+/// Energy per volume [J/m^3] that isotropic elasticity with Lamé's constants [Pa] stores under a Cauchy stress [Pa].
+#[inline(always)]
+pub fn energy([lambda, mu]: [f64; 2], stress: [f64; 6]) -> f64 {
+    let (mean, s) = (trace(stress) / 3.0, deviator(stress));
+    0.5 * mean * mean / (lambda + 2.0 / 3.0 * mu) + 0.25 * contract(s, s) / mu
 }

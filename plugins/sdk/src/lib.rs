@@ -20,6 +20,7 @@ pub mod elastic;
 pub mod math;
 mod model;
 mod point;
+mod principal;
 pub mod simd;
 mod table;
 pub mod tensor;
@@ -31,8 +32,11 @@ pub use lahar_plugin_abi as abi;
 pub use model::Model;
 pub use nalgebra;
 pub use point::{Point, PointLaw, Updated};
-pub use table::{Input, Kinematics, ModelTable, Output, Parameter, Plugin, State, c_text};
-pub use wall::{enter, log};
+pub use principal::principal;
+pub use table::{
+    Input, Kinematics, ModelTable, Output, Parameter, Plugin, State, Transfer, c_text,
+};
+pub use wall::{enter, log, should_stop};
 
 /// Writes `lahar_plugin_entry_v1`, which returns the given `&'static Plugin`.
 ///

@@ -1,7 +1,7 @@
 //! What an author implements.
 
 use crate::batch::Batch;
-use crate::table::{Input, Kinematics, Output, Parameter, State};
+use crate::table::{Input, Kinematics, Output, Parameter, State, Transfer};
 use std::ffi::CStr;
 
 /// A constitutive model with one set of parameter values. Instances are shared by threads.
@@ -22,6 +22,12 @@ pub trait Model: Sized + Send + Sync + 'static {
     const INPUTS: &'static [Input] = &[];
     /// The outputs beside the stress. [`Output::WAVE_SPEED`] is mandatory.
     const OUTPUTS: Output;
+    /// Whether [`Model::tangent`] is written.
+    const HAS_TANGENT: bool = false;
+    /// Whether [`Model::stored_energy`] is written.
+    const HAS_STORED_ENERGY: bool = false;
+    /// What becomes of each state variable when points are merged; empty: the mean of all.
+    const TRANSFER: &'static [Transfer] = &[];
 
     /// Makes an instance from one value per parameter; the engine has checked kinds and hard bounds.
     fn new(values: &[f64]) -> Result<Self, String>;
@@ -47,4 +53,15 @@ pub trait Model: Sized + Send + Sync + 'static {
     /// if the model takes it, the deformation gradient.
     /// Compiled like `update`.
     fn wave_speed(&self, batch: &mut Batch<'_>);
+
+    /// Derivative [Pa] of the end stress (rows) of point `k` by its strain increment (columns), of the step that `update` makes. A shear
+    /// component of the increment stands for both of its places: elasticity has 2 G there.
+    fn tangent(&self, _batch: &Batch<'_>, _k: usize) -> [[f64; 6]; 6] {
+        [[f64::NAN; 6]; 6]
+    }
+
+    /// Energy per current volume [J/m^3] of point `k` at the start that can be had back.
+    fn stored_energy(&self, _batch: &Batch<'_>, _k: usize) -> f64 {
+        f64::NAN
+    }
 }

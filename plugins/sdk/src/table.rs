@@ -4,7 +4,7 @@ use crate::batch::MAX_INPUTS;
 use crate::model::Model;
 use crate::wall;
 use lahar_plugin_abi::*;
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 use std::marker::PhantomData;
 use std::ops::BitOr;
 use std::ptr;
@@ -31,6 +31,32 @@ pub enum Input {
     Density = LAHAR_INPUT_DENSITY,
     /// Grid spacing [m].
     ElementLength = LAHAR_INPUT_ELEMENT_LENGTH,
+    /// Temperature [K].
+    Temperature = LAHAR_INPUT_TEMPERATURE,
+    /// Specific internal energy at the start of the step [J/kg].
+    InternalEnergy = LAHAR_INPUT_INTERNAL_ENERGY,
+    /// Pore pressure, compression positive [Pa].
+    PorePressure = LAHAR_INPUT_PORE_PRESSURE,
+    /// x of the position [m].
+    PositionX = LAHAR_INPUT_POSITION_X,
+    /// y of the position [m].
+    PositionY = LAHAR_INPUT_POSITION_Y,
+    /// z of the position [m].
+    PositionZ = LAHAR_INPUT_POSITION_Z,
+    /// Id of the particle inside its body [-].
+    ParticleId = LAHAR_INPUT_PARTICLE_ID,
+}
+
+/// What becomes of a state variable when points are merged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Transfer {
+    /// The mean, weighted by mass.
+    Mean = LAHAR_TRANSFER_MEAN,
+    /// The largest, component by component.
+    Max = LAHAR_TRANSFER_MAX,
+    /// Points that differ in it are not merged.
+    Never = LAHAR_TRANSFER_NEVER,
 }
 
 /// A set of outputs; join them with `|` in run-time code and with [`Output::and`] in constants.
@@ -42,7 +68,7 @@ impl Output {
     pub const WAVE_SPEED: Self = Self(LAHAR_OUTPUT_WAVE_SPEED);
     /// Kinematic diffusivity [m^2/s].
     pub const DIFFUSIVITY: Self = Self(LAHAR_OUTPUT_DIFFUSIVITY);
-    /// Stored energy per current volume [J/m^3].
+    /// Energy per current volume, stored or internal [J/m^3].
     pub const ENERGY: Self = Self(LAHAR_OUTPUT_ENERGY);
     /// Wanted factor on the next time step [-].
     pub const DT_FACTOR: Self = Self(LAHAR_OUTPUT_DT_FACTOR);
@@ -140,6 +166,12 @@ impl Parameter {
     /// The same parameter with a default value, hence not required.
     pub const fn default(mut self, value: f64) -> Self {
         self.0.required = 0;
+        self.0.default_value = value;
+        self
+    }
+
+    /// The same parameter, still required, with a typical value: tools try the model with it.
+    pub const fn typical(mut self, value: f64) -> Self {
         self.0.default_value = value;
         self
     }
@@ -263,20 +295,63 @@ impl<M: Model> Table<M> {
             state_size: size_of::<lahar_state_desc>() as u32,
             states: table_of(M::STATES),
             input_count: M::INPUTS.len() as u32,
-            reserved: 0,
+            required_minor: 0,
             inputs: table_of(M::INPUTS),
             outputs: M::OUTPUTS.0,
             capabilities: LAHAR_CAPABILITY_THREAD_SAFE
                 | LAHAR_CAPABILITY_POINTWISE
-                | LAHAR_CAPABILITY_DETERMINISTIC,
+                | LAHAR_CAPABILITY_DETERMINISTIC
+                | if M::HAS_TANGENT { LAHAR_CAPABILITY_TANGENT } else { 0 },
             create: Some(wall::create::<M>),
             destroy: Some(wall::destroy::<M>),
             check: Some(wall::check::<M>),
             init_state: Some(wall::init_state::<M>),
             update: Some(wall::update::<M>),
             wave_speed: Some(wall::wave_speed::<M>),
-            get_extension: None,
+            get_extension: Some(get_extension::<M>),
         }
+    }
+}
+
+/// The tables of the extensions that a model offers.
+struct Extensions<M>(PhantomData<M>);
+
+impl<M: Model> Extensions<M> {
+    const TANGENT: &'static lahar_tangent_extension = &lahar_tangent_extension {
+        struct_size: size_of::<lahar_tangent_extension>() as u32,
+        reserved: 0,
+        tangent: Some(wall::tangent::<M>),
+    };
+    const ENERGY: &'static lahar_energy_extension = &lahar_energy_extension {
+        struct_size: size_of::<lahar_energy_extension>() as u32,
+        reserved: 0,
+        stored: Some(wall::stored_energy::<M>),
+    };
+    const TRANSFER: &'static lahar_transfer_extension = &{
+        assert!(
+            M::TRANSFER.is_empty() || M::TRANSFER.len() == M::STATES.len(),
+            "TRANSFER has one rule per state variable, or none"
+        );
+        lahar_transfer_extension {
+            struct_size: size_of::<lahar_transfer_extension>() as u32,
+            count: M::TRANSFER.len() as u32,
+            rules: table_of(M::TRANSFER),
+        }
+    };
+}
+
+unsafe extern "C" fn get_extension<M: Model>(id: *const c_char) -> *const c_void {
+    if id.is_null() {
+        return ptr::null();
+    }
+    // SAFETY: the ABI gives a text that ends with a NUL.
+    match unsafe { CStr::from_ptr(id) }.to_bytes() {
+        b"lahar.tangent" if M::HAS_TANGENT => ptr::from_ref(Extensions::<M>::TANGENT).cast(),
+        b"lahar.energy" if M::HAS_STORED_ENERGY => ptr::from_ref(Extensions::<M>::ENERGY).cast(),
+        b"lahar.transfer" if !M::TRANSFER.is_empty() => {
+            ptr::from_ref(Extensions::<M>::TRANSFER).cast()
+        }
+        _ => ptr::null(),
     }
 }
 
@@ -330,9 +405,15 @@ impl Plugin {
         self
     }
 
-    /// The C table, for the entry and for hosts that link the model statically.
+    /// The C table.
     pub const fn desc(&'static self) -> &'static lahar_plugin_desc {
         &self.0
+    }
+
+    /// The C table for a host that links the plugin statically, after its own table has been kept.
+    pub fn entered(&'static self, host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+        wall::set_host(host);
+        self.desc()
     }
 }
 

@@ -27,27 +27,28 @@ pub unsafe fn enter(
 ) -> *const lahar_plugin_desc {
     std::panic::set_hook(Box::new(|_| ()));
     // SAFETY: told by the caller.
-    unsafe { set_host(host) };
+    if let Some(host) = unsafe { host.as_ref() } {
+        set_host(host);
+    }
     plugin.desc()
 }
 
 /// Keeps the host table if it is at least as large as the one known here.
-///
-/// # Safety
-///
-/// As for [`enter`].
-pub(crate) unsafe fn set_host(host: *const lahar_host_api) {
-    // SAFETY: the caller vouches for a non-NULL pointer; the size is the first member of every version of the table.
-    let known = unsafe { host.as_ref() }
-        .is_some_and(|h| h.struct_size as usize >= size_of::<lahar_host_api>());
-    if known {
-        HOST.store(host.cast_mut(), Ordering::Release);
+pub(crate) fn set_host(host: &'static lahar_host_api) {
+    if host.struct_size as usize >= size_of::<lahar_host_api>() {
+        HOST.store(ptr::from_ref(host).cast_mut(), Ordering::Release);
     }
 }
 
 fn host() -> Option<&'static lahar_host_api> {
     // SAFETY: the pointer is NULL or came through `set_host`, whose callers vouch for its life.
     unsafe { HOST.load(Ordering::Acquire).as_ref() }
+}
+
+/// Whether the host wants long work to end.
+pub fn should_stop() -> bool {
+    // SAFETY: the host's function takes nothing and may be called from any thread.
+    host().and_then(|h| h.should_stop).is_some_and(|stop| unsafe { stop() } != 0)
 }
 
 /// Hands a line to the host's log. `level` is one of those of `lahar.h`: 0 error, 1 warning, 2 information, 3 detail.
@@ -173,6 +174,54 @@ pub(crate) unsafe extern "C" fn wave_speed<M: Model>(
             Ok(())
         })
     })
+}
+
+pub(crate) unsafe extern "C" fn tangent<M: Model>(
+    instance: *const c_void,
+    batch: *const lahar_stress_batch,
+    tangent: *mut f64,
+) -> i32 {
+    // SAFETY: as in `init_state`; the ABI gives room for 36 components.
+    guard(|| unsafe {
+        with::<M>(instance, batch, Call::Tangent, |model, batch| {
+            let out = output(tangent, 35 * batch.stride + batch.n(), batch.n())?;
+            for k in 0..batch.n() {
+                for (c, value) in model.tangent(batch, k).as_flattened().iter().enumerate() {
+                    out[c * batch.stride + k] = *value;
+                }
+            }
+            Ok(())
+        })
+    })
+}
+
+pub(crate) unsafe extern "C" fn stored_energy<M: Model>(
+    instance: *const c_void,
+    batch: *const lahar_stress_batch,
+    energy: *mut f64,
+) -> i32 {
+    // SAFETY: as in `init_state`; the ABI gives room for one value per point.
+    guard(|| unsafe {
+        with::<M>(instance, batch, Call::StoredEnergy, |model, batch| {
+            let out = output(energy, batch.n(), batch.n())?;
+            for (k, value) in out.iter_mut().enumerate() {
+                *value = model.stored_energy(batch, k);
+            }
+            Ok(())
+        })
+    })
+}
+
+/// # Safety
+///
+/// `base` is NULL or points to `length` values that nobody else touches during `'a`.
+unsafe fn output<'a>(base: *mut f64, length: usize, n: usize) -> Result<&'a mut [f64], String> {
+    match (n, base.is_null()) {
+        (0, _) => Ok(&mut []),
+        (_, true) => Err("the place for the result is NULL".into()),
+        // SAFETY: told by the caller.
+        _ => Ok(unsafe { slice::from_raw_parts_mut(base, length) }),
+    }
 }
 
 /// A model's loops, to be compiled once per level of instructions.

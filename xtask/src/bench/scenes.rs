@@ -161,8 +161,7 @@ impl Scene {
     /// Makes the scene's model known to the context.
     fn register(&self, context: &Context, folder: &Path) -> Result<()> {
         if self.linked {
-            let table = lahar_model_linear_elastic::plugin();
-            return context.register_plugin(table).map(drop);
+            return context.register_plugin(lahar_model_linear_elastic::plugin).map(drop);
         }
         let file = folder.join(format!("lib{}.so", self.plugin));
         context.load_plugin(&file.to_string_lossy()).map(drop)

@@ -52,7 +52,7 @@ fn rotate<const P: usize, const Q: usize, const R: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lahar_plugin::nalgebra::{Matrix3, Rotation3, Vector3};
+    use nalgebra::{Matrix3, Rotation3, Vector3};
 
     #[test]
     fn axes_turn_the_tensor_into_its_principal_values() {
