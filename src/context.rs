@@ -11,6 +11,7 @@ use crate::material::{Model, Plugin};
 pub use crate::plugin::RustEntry;
 use crate::plugin::{self, StaticEntry};
 use crate::simd::Isa;
+use lahar_plugin_abi::{LAHAR_CAPABILITY_MAY_PRINT, LAHAR_CAPABILITY_MAY_STOP};
 use pool::Pool;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
@@ -110,7 +111,8 @@ impl Context {
     /// Loads a plugin into this context and returns its index in [`Context::plugins`].
     ///
     /// A text with a `/` is a path. Any other is a name that is looked for in the folders of `LAHAR_PLUGIN_PATH`
-    /// (separated by `:`): `lahar_newtonian` becomes `liblahar_newtonian.so`; the current directory is not searched.
+    /// (separated by `:`), then in `lahar/plugins-1` beside this library: `lahar_newtonian` becomes `liblahar_newtonian.so`; the current
+    /// directory is not searched. Of a library that is no plugin the adapter `lahar_umat`, if it is found by its name, makes one.
     /// The same file gives the same index again. Libraries stay loaded until the process ends.
     ///
     /// Errors: [`Status::PluginNotFound`], [`Status::PluginInvalid`], [`Status::PluginAbi`],
@@ -156,6 +158,18 @@ impl Context {
                         other.path.display()
                     ),
                 ));
+            }
+        }
+        for model in &plugin.models {
+            for (capability, text) in [
+                (LAHAR_CAPABILITY_MAY_STOP, "end the process"),
+                (LAHAR_CAPABILITY_MAY_PRINT, "print"),
+            ] {
+                if model.capabilities & capability != 0 {
+                    let path = plugin.path.display();
+                    let text = format!("plugin {path}: its model `{}` may {text}", model.name);
+                    self.log(LogLevel::Warning, &text);
+                }
             }
         }
         plugins.push(plugin);

@@ -42,6 +42,8 @@ pub enum Status {
     NonFiniteInput = 101,
     /// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
     OutsideGrid = 102,
+    /// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
+    SmallerStep = 103,
     /// A file could not be read or written.
     File = 200,
     /// The plugin file is missing.
@@ -67,8 +69,13 @@ pub enum Status {
 }
 
 impl Status {
+    /// Whether a material failed, or what it gave.
+    pub fn is_of_material(self) -> bool {
+        matches!(self, Self::MaterialFailed | Self::NonFinite)
+    }
+
     /// Every status, in the order of the documentation.
-    pub const ALL: [Status; 28] = [
+    pub const ALL: [Status; 29] = [
         Status::Ok,
         Status::NullArgument,
         Status::StructSize,
@@ -86,6 +93,7 @@ impl Status {
         Status::StepTooLarge,
         Status::NonFiniteInput,
         Status::OutsideGrid,
+        Status::SmallerStep,
         Status::File,
         Status::PluginNotFound,
         Status::PluginInvalid,

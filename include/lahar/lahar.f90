@@ -40,6 +40,7 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_STEP_TOO_LARGE = 100_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_NON_FINITE_INPUT = 101_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_OUTSIDE_GRID = 102_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ERROR_SMALLER_STEP = 103_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_FILE = 200_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_NOT_FOUND = 201_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_INVALID = 202_c_int32_t
@@ -173,6 +174,8 @@ module lahar
     integer(c_int32_t) :: axisymmetric = 0
     integer(c_int32_t) :: filter_order = 0
     integer(c_int32_t) :: body_force = 0
+    integer(c_int32_t) :: retries = 0
+    integer(c_int32_t) :: reserved = 0
   end type lahar_world_options
 
   type, bind(c), public :: lahar_array

@@ -101,6 +101,9 @@ struct lahar_host_api;
 // A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
 #define LAHAR_ERROR_OUTSIDE_GRID 102
 
+// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
+#define LAHAR_ERROR_SMALLER_STEP 103
+
 // A file could not be read or written.
 #define LAHAR_ERROR_FILE 200
 
@@ -282,7 +285,8 @@ void lahar_log_stderr(int32_t level, const char *message, void *user);
 // process ends.
 //
 // `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
-// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':'.
+// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':', then in lahar/plugins-1 beside this
+// library. A library that is no plugin but holds an Abaqus UMAT or VUMAT is taken too, if the plugin lahar_umat is found by its name.
 // `plugin`: gets its index in the context; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
 // LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
@@ -651,6 +655,12 @@ typedef struct lahar_world_options {
     int32_t filter_order;
     // 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
     int32_t body_force;
+    // How often a step is repeated smaller when a material fails or asks for a smaller one, 0 (default) to 20. Then such a step changes
+    // nothing: it is answered by LAHAR_ERROR_SMALLER_STEP if the host gave its length, or if the repetitions did not help. It
+    // costs a copy of the particles, in memory and once in each step. With 0 a failure poisons the world, and a wish shortens the next step.
+    int32_t retries;
+    // 0.
+    int32_t reserved;
 } lahar_world_options;
 
 // Fills the options with their defaults.
@@ -1671,7 +1681,7 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, name) == 16);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, unit) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, description) == 32);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_state_info, initial) == 40);
-LAHAR_ASSERT_LAYOUT(sizeof(lahar_world_options) == 168);
+LAHAR_ASSERT_LAYOUT(sizeof(lahar_world_options) == 176);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, struct_size) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, dimension) == 4);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, shape) == 8);
@@ -1690,6 +1700,8 @@ LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, wall_treatment) == 152);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, axisymmetric) == 156);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, filter_order) == 160);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, body_force) == 164);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, retries) == 168);
+LAHAR_ASSERT_LAYOUT(offsetof(lahar_world_options, reserved) == 172);
 LAHAR_ASSERT_LAYOUT(sizeof(lahar_array) == 24);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, data) == 0);
 LAHAR_ASSERT_LAYOUT(offsetof(lahar_array, component_stride) == 8);

@@ -236,7 +236,8 @@ pub unsafe extern "C" fn lahar_log_stderr(level: i32, message: *const c_char, us
 /// process ends.
 ///
 /// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
-/// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':'.
+/// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':', then in lahar/plugins-1 beside this
+/// library. A library that is no plugin but holds an Abaqus UMAT or VUMAT is taken too, if the plugin lahar_umat is found by its name.
 /// `plugin`: gets its index in the context; may be NULL.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
 /// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.

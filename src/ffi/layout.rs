@@ -36,10 +36,11 @@ layout! {
         struct_size: 0, kind: 4, components: 8, rotation: 12, name: 16, unit: 24, description: 32,
         initial: 40,
     }
-    lahar_world_options: 168 {
+    lahar_world_options: 176 {
         struct_size: 0, dimension: 4, shape: 8, transfer: 12, order: 16, grid_policy: 20,
         spacing: 24, origin: 32, pic_rate: 56, cfl: 64, gravity: 72, damping: 96, box_min: 104,
         box_max: 128, wall_treatment: 152, axisymmetric: 156, filter_order: 160, body_force: 164,
+        retries: 168, reserved: 172,
     }
     lahar_array: 24 {
         data: 0, component_stride: 8, point_stride: 16,

@@ -137,6 +137,12 @@ pub struct lahar_world_options {
     pub filter_order: i32,
     /// 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
     pub body_force: i32,
+    /// How often a step is repeated smaller when a material fails or asks for a smaller one, 0 (default) to 20. Then such a step changes
+    /// nothing: it is answered by LAHAR_ERROR_SMALLER_STEP if the host gave its length, or if the repetitions did not help. It
+    /// costs a copy of the particles, in memory and once in each step. With 0 a failure poisons the world, and a wish shortens the next step.
+    pub retries: i32,
+    /// 0.
+    pub reserved: i32,
 }
 
 // SAFETY: repr(C), begins with a u32, no padding (layout.rs), numbers only.
@@ -181,10 +187,16 @@ fn from_options(options: &Options) -> lahar_world_options {
         axisymmetric: i32::from(options.axisymmetric),
         filter_order: options.filter_order,
         body_force: i32::from(options.body_force),
+        retries: options.retries,
+        reserved: 0,
     }
 }
 
 fn to_options(options: &lahar_world_options) -> Result<Options> {
+    if options.reserved != 0 {
+        let text = format!("`reserved` of the options is {}; expected 0", options.reserved);
+        return Err(Error::invalid(text));
+    }
     let dimension = match options.dimension {
         2 => 2,
         3 => 3,
@@ -212,6 +224,7 @@ fn to_options(options: &lahar_world_options) -> Result<Options> {
         axisymmetric: flag(options.axisymmetric, "axisymmetric")?,
         filter_order: if options.filter_order == 0 { 2 } else { options.filter_order },
         body_force: flag(options.body_force, "body_force")?,
+        retries: options.retries,
     })
 }
 

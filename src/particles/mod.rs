@@ -137,6 +137,20 @@ impl Particles {
         Ok(new)
     }
 
+    /// Copies all columns.
+    pub fn copy_columns(&self, copy: &mut Vec<f64>) -> Result<()> {
+        copy.clear();
+        reserve(copy, self.data.as_slice().len(), "the start of a step")?;
+        copy.extend_from_slice(self.data.as_slice());
+        Ok(())
+    }
+
+    /// Takes all columns from a copy that was made since particles were last sorted into blocks.
+    pub fn restore_columns(&mut self, copy: &[f64]) {
+        self.data.as_mut_slice().copy_from_slice(copy);
+        self.moved.fill(0);
+    }
+
     /// What the averaging of F-bar takes; the body must have it.
     pub fn dilations<const D: usize>(&mut self) -> Dilations<'_, D> {
         let (layout, stride, n) = (self.layout, self.stride, self.len());

@@ -5,10 +5,13 @@ use super::host::{HOST, take_error};
 use crate::error::{Error, Result, Status};
 use crate::material::Plugin;
 use lahar_plugin_abi::{LAHAR_PLUGIN_ABI_MAJOR, lahar_host_api, lahar_plugin_desc};
+use libc::c_char;
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::ffi::{CStr, CString, OsStr};
 use std::fs::{self, File};
 use std::io::Read;
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -16,6 +19,11 @@ use std::sync::{Mutex, PoisonError};
 static LOADED: Mutex<Vec<&'static Plugin>> = Mutex::new(Vec::new());
 
 type Entry = unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_desc;
+
+/// The plugin that makes plugins of libraries that are none, such as those with a UMAT.
+const ADAPTER: &str = "lahar_umat";
+
+type Adapt = unsafe extern "C" fn(*const lahar_host_api, *const c_char) -> *const lahar_plugin_desc;
 
 /// Majors whose entry symbols are looked for when that of this library is missing.
 const PROBED_MAJORS: std::ops::RangeInclusive<u32> = 0..=9;
@@ -34,7 +42,7 @@ pub(crate) fn load(name_or_path: &str) -> Result<&'static Plugin> {
     Ok(plugin)
 }
 
-/// Looks for the library of a bare name in the absolute folders of `LAHAR_PLUGIN_PATH`.
+/// Looks for the library of a bare name in the absolute folders of `LAHAR_PLUGIN_PATH`, then where this library is installed.
 fn find(name: &str) -> Result<PathBuf> {
     if name.is_empty() {
         return Err(Error::invalid("the name of the plugin is empty; give a name or a path"));
@@ -42,18 +50,22 @@ fn find(name: &str) -> Result<PathBuf> {
     let file = format!("{DLL_PREFIX}{name}{DLL_SUFFIX}");
     let variable = std::env::var_os("LAHAR_PLUGIN_PATH").unwrap_or_default();
     // An empty or relative folder would mean the current directory, from which nothing is loaded unasked.
-    let folders: Vec<PathBuf> =
+    let asked: Vec<PathBuf> =
         std::env::split_paths(&variable).filter(|folder| folder.is_absolute()).collect();
-    if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|p| p.exists()) {
+    let installed = installed_folders();
+    let folders = asked.iter().chain(&installed);
+    if let Some(path) = folders.map(|folder| folder.join(&file)).find(|p| p.exists()) {
         return Ok(path);
     }
-    let searched = match folders.as_slice() {
-        [] => "LAHAR_PLUGIN_PATH names no absolute folder".to_string(),
-        some => {
-            let some: Vec<String> = some.iter().map(|f| f.display().to_string()).collect();
-            format!("searched for {file} in {} (LAHAR_PLUGIN_PATH)", some.join(", "))
-        }
+    let list = |folders: &[PathBuf]| {
+        let shown: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
+        shown.join(", ")
     };
+    let asked = match asked.as_slice() {
+        [] => "LAHAR_PLUGIN_PATH names no absolute folder".to_string(),
+        some => format!("it is not in {} (LAHAR_PLUGIN_PATH)", list(some)),
+    };
+    let searched = format!("searched for {file}: {asked}, nor in {}", list(&installed));
     Err(Error::new(
         Status::PluginNotFound,
         format!(
@@ -61,6 +73,34 @@ fn find(name: &str) -> Result<PathBuf> {
              plugin's folder to LAHAR_PLUGIN_PATH"
         ),
     ))
+}
+
+/// Where plugins of this library's installation stand: `lahar/plugins-1` beside the library, or under `lib` beside the folder of a
+/// program that contains it.
+fn installed_folders() -> Vec<PathBuf> {
+    let Some(own) = own_path() else { return Vec::new() };
+    let folder = own.parent().unwrap_or(Path::new("/"));
+    let plugins = format!("lahar/plugins-{LAHAR_PLUGIN_ABI_MAJOR}");
+    let above = folder.parent().unwrap_or(folder);
+    vec![folder.join(&plugins), above.join("lib").join(&plugins)]
+}
+
+/// The file that this code was loaded from.
+fn own_path() -> Option<PathBuf> {
+    let mut info = libc::Dl_info {
+        dli_fname: std::ptr::null(),
+        dli_fbase: std::ptr::null_mut(),
+        dli_sname: std::ptr::null(),
+        dli_saddr: std::ptr::null_mut(),
+    };
+    // SAFETY: the address is of this library's own code, and `info` is a place for the answer.
+    let found = unsafe { libc::dladdr(own_path as *const libc::c_void, &mut info) } != 0;
+    if !found || info.dli_fname.is_null() {
+        return None;
+    }
+    // SAFETY: the system gives a text that ends with a NUL and lives as long as this library is loaded.
+    let name = unsafe { CStr::from_ptr(info.dli_fname) };
+    fs::canonicalize(OsStr::from_bytes(name.to_bytes())).ok()
 }
 
 /// The canonical path of an existing file that looks like a shared library.
@@ -87,10 +127,29 @@ fn canonical_file(path: &Path) -> Result<PathBuf> {
             "this is not a shared library (it does not start as an ELF file does); give the path of a .so file",
         ));
     }
+    if let Some(machine) = foreign_machine(&start) {
+        return Err(invalid(&format!(
+            "this is a library for another kind of processor (ELF machine {machine}, expected {MACHINE}); build it for \
+             this one"
+        )));
+    }
     if needed_length(&start).is_some_and(|needed| needed > kind.len()) {
         return Err(invalid("this shared library is cut off; copy or build it again"));
     }
     Ok(path)
+}
+
+/// Number of this processor's kind in ELF files; 0 if it is not known here.
+const MACHINE: u16 = match () {
+    () if cfg!(target_arch = "x86_64") => 62,
+    () if cfg!(target_arch = "aarch64") => 183,
+    () => 0,
+};
+
+/// The kind of processor that an ELF file is for, if it is another.
+fn foreign_machine(start: &[u8]) -> Option<u16> {
+    let machine = u16::from_le_bytes(start.get(18..20)?.try_into().ok()?);
+    (start[..4] == *b"\x7fELF" && MACHINE != 0 && machine != MACHINE).then_some(machine)
 }
 
 /// Length that a 64-bit little-endian ELF file must have to hold its loaded segments and its table of sections, which
@@ -121,15 +180,22 @@ fn open(path: &Path) -> Result<Plugin> {
     // SAFETY: the user asked for this library; its initialisers run with the rights of the process, which the
     // documentation of `lahar_context_load_plugin` says.
     let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| {
-        Error::new(
-            Status::PluginInvalid,
-            format!("plugin {shown}: the system cannot load it: {}", with_source(&e)),
-        )
+        let reason = with_source(&e);
+        let hint = if reason.contains("undefined symbol") {
+            "; link what defines it into the plugin (`lahar plugin umat-build` does that for the utility routines of Abaqus)"
+        } else {
+            ""
+        };
+        let text = format!("plugin {shown}: the system cannot load it: {reason}{hint}");
+        Error::new(Status::PluginInvalid, text)
     })?;
     let entry = find_entry(&library, path);
     // Thread-local destructors and static texts of a library live on: it is never unloaded, usable or not.
     std::mem::forget(library);
-    let entry = entry?;
+    let entry = match entry {
+        Err(error) if error.status == Status::PluginInvalid => return adapted(path, error),
+        entry => entry?,
+    };
     take_error();
     // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock of loading.
     let desc = unsafe { entry(&HOST) };
@@ -139,6 +205,40 @@ fn open(path: &Path) -> Result<Plugin> {
         return Err(Error::new(Status::PluginRefused, text));
     }
     // SAFETY: the entry of this major returns a table of this major, valid for the life of the process.
+    unsafe { handshake::read_plugin(desc, path) }
+}
+
+/// What the adapter makes of a library that is not a plugin.
+fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
+    let with = |text: &str| {
+        let message = format!("{}; {text}", not_a_plugin.message);
+        Err(Error { message, ..not_a_plugin.clone() })
+    };
+    let Ok(adapter) = find(ADAPTER).and_then(|found| canonical_file(&found)) else {
+        return with(
+            "if it holds an Abaqus UMAT, put liblahar_umat.so into a folder of LAHAR_PLUGIN_PATH",
+        );
+    };
+    let shown = adapter.display();
+    // SAFETY: as in `open`; the adapter is one of lahar's own.
+    let library = match unsafe { Library::open(Some(&adapter), RTLD_NOW | RTLD_LOCAL) } {
+        Ok(library) => library,
+        Err(error) => return with(&format!("{shown} cannot be loaded: {}", with_source(&error))),
+    };
+    let name = format!("lahar_plugin_adapt_v{LAHAR_PLUGIN_ABI_MAJOR}\0");
+    // SAFETY: the symbol's name fixes its type.
+    let adapt = unsafe { library.get::<Adapt>(name.as_bytes()) }.ok().map(|symbol| *symbol);
+    std::mem::forget(library);
+    let Some(adapt) = adapt else { return with(&format!("{shown} is not an adapter")) };
+    let foreign = CString::new(path.as_os_str().as_bytes()).unwrap_or_default();
+    take_error();
+    // SAFETY: the host table is static, the path ends with a NUL; the caller holds the lock of loading.
+    let desc = unsafe { adapt(&HOST, foreign.as_ptr()) };
+    if desc.is_null() {
+        let why = take_error().unwrap_or_else(|| "without saying why".into());
+        return with(&format!("and {shown} does not take it: {why}"));
+    }
+    // SAFETY: an adapter of this major returns a table of this major, valid for the life of the process.
     unsafe { handshake::read_plugin(desc, path) }
 }
 

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | how far may we go | dt | [`time_step`] |
 //! | sort particles into blocks | runs, tiles, active blocks | [`locate`](mod@locate) |
+//! | keep the start | a copy of the particles, where retries are allowed | [`retry`] |
 //! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
 //! | add the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
 //! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
@@ -25,6 +26,7 @@ pub mod locate;
 pub mod naive;
 pub mod order;
 pub mod particles_to_grid;
+pub mod retry;
 pub mod time_step;
 pub mod update_domain;
 pub mod update_grid;
@@ -44,6 +46,7 @@ use filter_velocities::{filter_again, filter_start, filter_velocities};
 use grid_to_particles::{Gather, grid_to_particles};
 use locate::{check_radii, locate};
 use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
+use retry::keep_start;
 use time_step::Limits;
 use update_grid::update_grid;
 use update_strain::update_strain;
@@ -53,6 +56,9 @@ use update_stress::{Outcome, update_stress};
 pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
     check_radii(world)?;
     locate(world)?;
+    if world.options.retries > 0 {
+        keep_start(world)?;
+    }
     world.hook(HookPoint::Start, dt);
     let outcome = match world.options.order {
         StepOrder::Usl => usl(world, dt),     // [ORD-1]
@@ -61,7 +67,7 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
         StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
-    outcome.limits()
+    outcome.limits(dt)
 }
 
 /// From particles to the new velocities of the grid: what all orders have in common.

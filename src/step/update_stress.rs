@@ -11,21 +11,34 @@ use crate::step::time_step::Limits;
 use crate::world::state::{ChunkStage, Piece};
 
 /// What the stress updates of a step lead to.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Outcome {
     limits: Limits,
+    /// Smallest factor on the time step that a point wants [–]; infinity if none wants one below 1.
+    factor: f64,
     failure: Option<Box<Error>>,
+}
+
+impl Default for Outcome {
+    fn default() -> Self {
+        Self { limits: Limits::default(), factor: f64::INFINITY, failure: None }
+    }
 }
 
 impl Outcome {
     /// Both together; of two failures the first counts.
     pub fn merge(self, other: Self) -> Self {
-        Self { limits: self.limits.merge(other.limits), failure: self.failure.or(other.failure) }
+        Self {
+            limits: self.limits.merge(other.limits),
+            factor: self.factor.min(other.factor),
+            failure: self.failure.or(other.failure),
+        }
     }
 
-    /// The limits of the next step, or the failure.
-    pub fn limits(self) -> Result<Limits> {
-        self.failure.map_or(Ok(self.limits), |error| Err(*error))
+    /// The limits of the step after one of length `dt` [s], or the failure.
+    pub fn limits(self, dt: f64) -> Result<Limits> {
+        let limits = Limits { wanted_dt: dt * self.factor, ..self.limits };
+        self.failure.map_or(Ok(limits), |error| Err(*error))
     }
 
     fn failed(error: Error) -> Self {
@@ -40,7 +53,7 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     if let Err(error) = result.and_then(|()| check_points(piece)) {
         return Outcome::failed(error);
     }
-    let wanted_dt = dt * wanted_factor(piece);
+    let factor = wanted_factor(piece);
     let (speed, finite) = piece.isa.dispatch(Commit(piece));
     if !finite {
         return Outcome::failed(not_finite(piece));
@@ -48,7 +61,8 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     let diffusivities = piece.scratch.diffusivity.iter().take(piece.chunk.len);
     let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
     piece.lap(ChunkStage::Stressed);
-    Outcome { limits: Limits { speed, diffusivity, wanted_dt }, failure: None }
+    let limits = Limits { speed, diffusivity, ..Limits::default() };
+    Outcome { limits, factor, failure: None }
 }
 
 fn check_points<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<()> {
@@ -164,7 +178,7 @@ fn fault<const D: usize>(piece: &Piece<'_, '_, D>, k: usize, status: Status, wha
     let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
     let text = format!(
         "the model `{model}` {what} at particle {particle} of body {body}: position {:?}, velocity {:?}, \
-         start stress {:?}; the world is poisoned: check parameters, time step and boundaries",
+         start stress {:?}; check parameters, time step and boundaries",
         chunk.get::<D>(layout.position, k),
         chunk.get::<D>(layout.velocity, k),
         piece.scratch.stress0_of(k),

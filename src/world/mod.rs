@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use crate::boundary::Wall;
 use crate::context::Context;
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Place, Result, Status};
 use crate::grid::GridStats;
 use crate::material::Material;
 use crate::particles::FieldInfo;
@@ -30,7 +30,8 @@ use crate::step;
 use crate::step::apply_tractions::apply_tractions;
 use crate::step::locate::locate;
 use crate::step::particles_to_grid::particles_to_grid;
-use crate::step::time_step::limits_of_state;
+use crate::step::retry::back_to_start;
+use crate::step::time_step::{Limits, limits_of_state};
 use crate::step::update_grid::update_grid;
 
 use hooks::{Hook, HookPoint};
@@ -200,9 +201,9 @@ impl World {
     /// One step, of length `dt` [s] or the stable one; gives the length.
     ///
     /// Refused with [`Status::StepTooLarge`] if `dt` exceeds the stable step. If a material fails in the middle the world is
-    /// poisoned.
+    /// poisoned, unless the option `retries` lets steps be repeated smaller: then [`Status::SmallerStep`] says that nothing was done.
     pub fn step(&mut self, dt: Option<f64>) -> Result<f64> {
-        let stable = self.prepare()?;
+        let (stable, automatic) = (self.prepare()?, dt.is_none());
         let dt = match dt {
             Some(dt) => dt,
             None if stable.is_finite() => stable,
@@ -225,7 +226,7 @@ impl World {
             );
             return Err(Error::new(Status::StepTooLarge, text).at(place));
         }
-        self.commit(dt)?;
+        let dt = self.commit(dt, automatic)?;
         on!(&mut self, s => s.time += dt);
         Ok(dt)
     }
@@ -255,9 +256,10 @@ impl World {
             } else {
                 stable
             };
-            if let Err(error) = self.commit(dt) {
-                return (steps, Err(error));
-            }
+            let dt = match self.commit(dt, true) {
+                Ok(dt) => dt,
+                Err(error) => return (steps, Err(error)),
+            };
             on!(&mut self, s => s.time = if dt == rest { until } else { s.time + dt });
             steps += 1;
         }
@@ -284,14 +286,51 @@ impl World {
         self.stable_dt()
     }
 
-    fn commit(&mut self, dt: f64) -> Result<()> {
-        if self.time() + dt == self.time() {
-            return Err(Error::invalid(format!(
-                "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing",
-                self.time()
-            )));
+    /// Makes a step of `dt` [s], or a smaller one if a material wants that, `shorter` allows it, and the host lets steps be repeated.
+    /// Gives the length of the step that was made.
+    fn commit(&mut self, mut dt: f64, shorter: bool) -> Result<f64> {
+        let retries = self.options().retries;
+        let mut left = if shorter { retries } else { 0 };
+        loop {
+            if self.time() + dt == self.time() {
+                return Err(Error::invalid(format!(
+                    "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing",
+                    self.time()
+                )));
+            }
+            let result = self.attempt(dt);
+            let (wanted, why) = match result {
+                Ok(limits) if retries == 0 || limits.wanted_dt >= dt => {
+                    on!(&mut self, s => {
+                        s.limits = Some(limits);
+                        s.step_count += 1;
+                    });
+                    self.last_dt = dt;
+                    return Ok(dt);
+                }
+                Ok(limits) => (limits.wanted_dt, None),
+                Err(error) if retries > 0 && error.status.is_of_material() => {
+                    (0.5 * dt, Some(error))
+                }
+                Err(mut error) => {
+                    self.poisoned = (error.status as i32) < 0;
+                    if self.poisoned {
+                        error.message += "; the world is poisoned";
+                    }
+                    return Err(error);
+                }
+            };
+            on!(&mut self, s => back_to_start(s));
+            if left == 0 {
+                return Err(self.refused(dt, wanted, why));
+            }
+            left -= 1;
+            dt = wanted;
         }
-        let result = on!(&mut self, s => {
+    }
+
+    fn attempt(&mut self, dt: f64) -> Result<Limits> {
+        on!(&mut self, s => {
             let place = s.place();
             let result = if s.parallel {
                 let context = s.context.clone();
@@ -299,23 +338,24 @@ impl World {
             } else {
                 step::step(&mut **s, dt)
             };
-            match result {
-                Ok(limits) => {
-                    s.limits = Some(limits);
-                    s.step_count += 1;
-                    Ok(())
-                }
-                Err(mut error) => {
-                    (error.place.step, error.place.time) = (place.step, place.time);
-                    Err(error)
-                }
-            }
-        });
-        match &result {
-            Ok(()) => self.last_dt = dt,
-            Err(error) => self.poisoned = (error.status as i32) < 0,
-        }
-        result
+            result.map_err(|mut error| {
+                (error.place.step, error.place.time) = (place.step, place.time);
+                error
+            })
+        })
+    }
+
+    /// A step that was taken back, and will not be repeated.
+    fn refused(&self, dt: f64, wanted: f64, why: Option<Error>) -> Error {
+        let why = why.map_or_else(
+            || Error::invalid("a material asks for a smaller step").at(on!(&self, s => s.place())),
+            |error| error,
+        );
+        let text = format!(
+            "the step of {dt:e} s was taken back, nothing was done: {}; take {wanted:e} s or less, or find the cause",
+            why.message
+        );
+        Error::new(Status::SmallerStep, text).at(Place { suggested_dt: Some(wanted), ..why.place })
     }
 
     /// The stable time step [s]; infinity without particles.

@@ -44,6 +44,8 @@ pub struct Options {
     pub filter_order: i32,
     /// Whether particles carry a body force.
     pub body_force: bool,
+    /// How often a step is repeated smaller if a material fails or asks for that; 0: never, a failure poisons the world.
+    pub retries: i32,
 }
 
 impl Default for Options {
@@ -66,9 +68,13 @@ impl Default for Options {
             axisymmetric: false,
             filter_order: 2,
             body_force: false,
+            retries: 0,
         }
     }
 }
+
+/// Most retries of a step; each at least halves it or does what the material asks for.
+const MOST_RETRIES: i32 = 20;
 
 /// Most blocks of a static grid.
 const MOST_BLOCKS: f64 = 1e8;
@@ -108,6 +114,12 @@ impl Options {
                 "filter_order must be 1 (PIC) to {}, got {}",
                 filter::MOST,
                 self.filter_order
+            )));
+        }
+        if !(0..=MOST_RETRIES).contains(&self.retries) {
+            return Err(Error::invalid(format!(
+                "retries must be 0 (none) to {MOST_RETRIES}, got {}",
+                self.retries
             )));
         }
         self.check_gravity(self.gravity)?;

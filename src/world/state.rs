@@ -177,6 +177,8 @@ pub struct State<const D: usize> {
     pub filtered: Vec<Filtered>,
     /// Sums of F-bar.
     pub patches: Patches,
+    /// Columns of each body at the start of the step, where the host allows retries.
+    pub start: Vec<Vec<f64>>,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
@@ -212,6 +214,7 @@ impl<const D: usize> State<D> {
             impulses: Vec::new(),
             filtered: Vec::new(),
             patches: Patches::default(),
+            start: Vec::new(),
             sorting: Sorting::default(),
             regroup: true,
             rescan: true,

@@ -1,11 +1,11 @@
-//! Contexts, loading of plugins, the handshake with bad ones, materials.
+//! Contexts, materials, batches, threads.
 
-use crate::support::{bad_plugin, in_child, plugin_path, scratch_folder, target_folder};
+use crate::support::{bad_plugin, in_child, plugin_path};
 use lahar::context::{Context, LogLevel};
 use lahar::error::{Error, Status};
 use lahar::material::{Input, Kinematics, Material, StressBatch};
 use std::cell::RefCell;
-use std::fs;
+use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Barrier, Mutex};
 use std::thread;
@@ -13,20 +13,13 @@ use std::thread;
 const SHIPPED: [&str; 5] =
     ["linear_elastic", "drucker_prager", "newtonian", "neo_hookean", "hencky"];
 
-fn context() -> Arc<Context> {
+pub fn context() -> Arc<Context> {
     Context::new(Some(1)).unwrap()
-}
-
-fn refusal(path: &str) -> Error {
-    let context = context();
-    let error = context.load_plugin(path).unwrap_err();
-    assert!(context.plugins().is_empty(), "a refused plugin is in the list");
-    error
 }
 
 /// The status, and every one of the texts in the message.
 #[track_caller]
-fn expect<T>(result: Result<T, Error>, status: Status, texts: &[&str]) {
+pub fn expect<T>(result: Result<T, Error>, status: Status, texts: &[&str]) {
     let Err(error) = result else { panic!("expected {status:?}, got success") };
     assert_eq!(error.status, status, "{error}");
     for text in texts {
@@ -69,7 +62,7 @@ fn shipped_plugins_load_and_describe_their_models() {
 #[test]
 fn a_shipped_plugin_exports_its_entry_and_nothing_else() {
     for name in SHIPPED {
-        let output = std::process::Command::new("nm")
+        let output = Command::new("nm")
             .args(["-D", "--defined-only", &plugin_path(name)])
             .output()
             .expect("nm runs");
@@ -78,110 +71,6 @@ fn a_shipped_plugin_exports_its_entry_and_nothing_else() {
             text.lines().filter_map(|line| line.split_whitespace().last()).collect();
         assert_eq!(symbols, ["lahar_plugin_entry_v1"]);
     }
-}
-
-#[test]
-fn the_same_file_is_loaded_once() {
-    let (a, b) = (context(), context());
-    let path = plugin_path("linear_elastic");
-    assert_eq!(a.load_plugin(&path).unwrap(), 0);
-    assert_eq!(a.load_plugin(&plugin_path("newtonian")).unwrap(), 1);
-    assert_eq!(a.load_plugin(&path).unwrap(), 0);
-    let link = scratch_folder().join("another_name.so");
-    std::os::unix::fs::symlink(&path, &link).unwrap();
-    assert_eq!(a.load_plugin(link.to_str().unwrap()).unwrap(), 0);
-    assert_eq!(a.plugins().len(), 2);
-    b.load_plugin(&path).unwrap();
-    assert!(std::ptr::eq(a.plugins()[0], b.plugins()[0]));
-    assert_eq!(b.plugins().len(), 1);
-}
-
-#[test]
-fn a_bare_name_is_looked_for_in_the_plugin_path_and_nowhere_else() {
-    let folder = target_folder();
-    let path = format!(".::{}", folder.display());
-    let name = "plugins::a_bare_name_is_looked_for_in_the_plugin_path_and_nowhere_else";
-    if !in_child(name, &[("LAHAR_PLUGIN_PATH", &path)]) {
-        return;
-    }
-    let context = context();
-    context.load_plugin("lahar_linear_elastic").unwrap();
-    assert_eq!(context.models()[0].name, "linear_elastic");
-    // The current directory is not searched, though `.` and an empty folder are in the variable.
-    let here = scratch_folder();
-    fs::copy(plugin_path("newtonian"), here.join("liblahar_here.so")).unwrap();
-    std::env::set_current_dir(&here).unwrap();
-    let result = context.load_plugin("lahar_here");
-    expect(
-        result,
-        Status::PluginNotFound,
-        &["lahar_here", "liblahar_here.so", "./liblahar_here.so"],
-    );
-    context.load_plugin("./liblahar_here.so").unwrap();
-    expect(context.load_plugin(""), Status::InvalidArgument, &["empty"]);
-}
-
-#[test]
-fn a_missing_file_a_folder_and_a_text_have_messages_of_their_own() {
-    let missing = refusal("/nowhere/liblahar_x.so");
-    assert_eq!(missing.status, Status::PluginNotFound);
-    assert!(missing.message.contains("/nowhere/liblahar_x.so"));
-    let folder = scratch_folder();
-    let directory = refusal(folder.to_str().unwrap());
-    assert_eq!(directory.status, Status::PluginInvalid);
-    assert!(directory.message.contains("directory"));
-    for content in ["not a library", ""] {
-        let file = folder.join("text.so");
-        fs::write(&file, content).unwrap();
-        let text = refusal(file.to_str().unwrap());
-        assert_eq!(text.status, Status::PluginInvalid);
-        assert!(text.message.contains("not a shared library"));
-    }
-    // A file that was copied by half: the system's loader would take the process down.
-    let whole = fs::read(plugin_path("newtonian")).unwrap();
-    let cut = folder.join("cut.so");
-    for length in [16, 64, 4096, whole.len() / 2] {
-        fs::write(&cut, &whole[..length]).unwrap();
-        let error = refusal(cut.to_str().unwrap());
-        assert_eq!(error.status, Status::PluginInvalid);
-    }
-    fs::write(&cut, &whole).unwrap();
-    context().load_plugin(cut.to_str().unwrap()).unwrap();
-}
-
-#[test]
-fn every_bad_plugin_is_refused_with_its_reason() {
-    let invalid = Status::PluginInvalid;
-    for (name, status, texts) in [
-        ("wrong_major", Status::PluginAbi, &["expected major 1", "found major 2"][..]),
-        ("wrong_table_major", Status::PluginAbi, &["expected major 1", "found major 2"]),
-        ("null_desc", Status::PluginRefused, &["without saying why"]),
-        ("refusing", Status::PluginRefused, &["the licence server is asleep"]),
-        ("not_a_plugin", invalid, &["not a lahar plugin", "lahar_plugin_entry_v1"]),
-        ("missing_symbol", invalid, &["nobody_has_this_function"]),
-        ("duplicate_parameters", invalid, &["model `minimal`", "two parameters", "`first`"]),
-        ("default_out_of_bounds", invalid, &["parameter `second`", "default 11", "from 0 to 10"]),
-        ("nan_bound", invalid, &["parameter `first`", "hard_min", "NaN"]),
-        ("no_update", invalid, &["expected the function `update`, got NULL"]),
-        ("no_wave_speed_output", invalid, &["LAHAR_OUTPUT_WAVE_SPEED"]),
-        ("unknown_output", invalid, &["expected outputs among", "0x10000000001"]),
-        ("unknown_input", invalid, &["wants input 12", "density"]),
-        ("unknown_kinematics", invalid, &["expected kinematics 0, 1, 2 or 3, got 7"]),
-        ("small_table", invalid, &["plugin table", "struct_size", "got 16"]),
-        ("small_parameters", invalid, &["expected parameters of at least", "got 8"]),
-        ("no_models", invalid, &["at least one model"]),
-        ("duplicate_models", invalid, &["two models are named `minimal`"]),
-        ("bad_name", invalid, &["expected ASCII letters", "`name`"]),
-        ("null_name", invalid, &["expected a text for `name`, got NULL"]),
-        ("null_states", invalid, &["expected 1 states, got NULL"]),
-    ] {
-        let path = bad_plugin(name);
-        let error = refusal(&path);
-        assert!(error.message.contains(&path), "{error}");
-        expect::<()>(Err(error), status, texts);
-    }
-    // The control: the same file with nothing spoiled is accepted.
-    context().load_plugin(&bad_plugin("nothing_wrong")).unwrap();
 }
 
 #[test]
@@ -194,7 +83,7 @@ fn two_models_of_one_name_do_not_go_into_one_context() {
     assert_eq!(context.plugins().len(), 1);
 }
 
-fn with_plugin(path: &str) -> Arc<Context> {
+pub fn with_plugin(path: &str) -> Arc<Context> {
     let context = context();
     context.load_plugin(path).unwrap();
     context

@@ -1,0 +1,125 @@
+//! Steps that a material wants smaller or fails in: repeated, or refused with nothing changed.
+
+use crate::setup::{a_box, fill, read, world};
+use crate::support::bad_plugin;
+use lahar::context::Context;
+use lahar::error::Status;
+use lahar::material::Material;
+use lahar::step::StepOrder;
+use lahar::world::World;
+use lahar::world::options::Options;
+
+/// A block that the model of a bad plugin fills, in a world that lets steps be repeated. The stable step is about 4e-3 s.
+fn block(plugin: &str, retries: i32, order: StepOrder) -> World {
+    let context = Context::new(Some(2)).unwrap();
+    context.load_plugin(&bad_plugin(plugin)).unwrap();
+    let material = Material::new(&context, "minimal", &[]).unwrap();
+    let options = Options {
+        dimension: 2,
+        spacing: 0.1,
+        gravity: [0.0, -1.0, 0.0],
+        retries,
+        order,
+        ..Options::default()
+    };
+    let mut world = world(&context, &options);
+    fill(&mut world, &material, &a_box([0.0; 3], [4.0, 4.0, 0.0]), 1000.0, [0.1, 0.0, 0.0]);
+    world
+}
+
+/// Everything that a particle has, by id.
+fn everything(world: &World) -> Vec<u64> {
+    let fields = ["position", "velocity", "volume", "stress", "strain_energy", "affine", "memory"];
+    fields.iter().flat_map(|f| read(world, 0, f)).map(f64::to_bits).collect()
+}
+
+const ORDERS: [StepOrder; 4] = [StepOrder::Usl, StepOrder::Musl, StepOrder::Usf, StepOrder::Usavg];
+
+#[test]
+fn a_step_is_repeated_with_the_length_that_the_material_asks_for() {
+    for order in [StepOrder::Usl, StepOrder::Musl, StepOrder::Usf] {
+        let mut repeated = block("wants_less", 3, order);
+        let mut plain = block("wants_less", 0, order);
+        for _ in 0..5 {
+            let dt = repeated.step(None).unwrap();
+            assert!((dt / 1e-3 - 1.0).abs() < 1e-12, "{dt}");
+            assert_eq!(plain.step(Some(dt)).unwrap(), dt);
+        }
+        assert_eq!(everything(&repeated), everything(&plain), "{order:?}");
+        assert_eq!((repeated.step_count(), repeated.time()), (5, plain.time()));
+    }
+}
+
+#[test]
+fn a_step_that_fails_is_halved_until_it_goes_or_the_retries_are_used_up() {
+    for order in ORDERS {
+        let mut world = block("fails_in_large_steps", 3, order);
+        let stable = world.stable_dt().unwrap();
+        let dt = world.step(None).unwrap();
+        // Stress updates of USAVG take half the step.
+        let limit = if order == StepOrder::Usavg { 2e-3 } else { 1e-3 };
+        assert!(dt <= limit && dt > 0.5 * limit, "{order:?}: {dt} of {stable}");
+        let (steps, result) = world.advance(0.02, 1000);
+        result.unwrap();
+        assert!(steps >= 9 && world.time() == 0.02);
+
+        let mut world = block("fails_in_large_steps", 1, order);
+        let before = everything(&world);
+        if order == StepOrder::Usavg {
+            continue; // one halving is enough
+        }
+        let error = world.step(None).map(|_| ()).unwrap_err();
+        assert_eq!(error.status, Status::SmallerStep);
+        assert!(error.message.contains("nothing was done"), "{error}");
+        assert!(error.message.contains("could not update"), "{error}");
+        assert_eq!(everything(&world), before);
+        assert_eq!((world.time(), world.step_count(), world.is_poisoned()), (0.0, 0, false));
+        let wanted = error.place.suggested_dt.unwrap();
+        assert_eq!(world.step(Some(wanted)).unwrap(), wanted);
+    }
+}
+
+#[test]
+fn a_step_of_the_hosts_own_length_is_refused_and_not_made_shorter() {
+    let mut world = block("wants_less", 3, StepOrder::Musl);
+    world.step(Some(1e-3)).unwrap();
+    let before = everything(&world);
+    let error = world.step(Some(2e-3)).map(|_| ()).unwrap_err();
+    assert_eq!(error.status, Status::SmallerStep);
+    assert!(error.message.contains("a material asks for a smaller step"), "{error}");
+    let wanted = error.place.suggested_dt.unwrap();
+    assert!((wanted / 1e-3 - 1.0).abs() < 1e-12);
+    assert_eq!((error.place.step, error.place.time), (Some(1), Some(1e-3)));
+    assert_eq!(everything(&world), before);
+    assert_eq!((world.step_count(), world.last_dt()), (1, 1e-3));
+    // What was taken back leaves no trace.
+    let mut other = block("wants_less", 0, StepOrder::Musl);
+    other.step(Some(1e-3)).unwrap();
+    world.step(Some(9e-4)).unwrap();
+    other.step(Some(9e-4)).unwrap();
+    assert_eq!(everything(&world), everything(&other));
+}
+
+#[test]
+fn without_retries_a_wish_shortens_the_next_step_and_a_failure_poisons_the_world() {
+    let mut world = block("wants_less", 0, StepOrder::Musl);
+    let first = world.step(None).unwrap();
+    let second = world.step(None).unwrap();
+    assert!(first > 3e-3 && (second / 1e-3 - 1.0).abs() < 1e-12, "{first}, {second}");
+    let mut world = block("fails_in_large_steps", 0, StepOrder::Musl);
+    let error = world.step(None).map(|_| ()).unwrap_err();
+    assert_eq!(error.status, Status::MaterialFailed);
+    assert!(error.message.contains("the world is poisoned"), "{error}");
+    assert!(world.is_poisoned());
+}
+
+#[test]
+fn the_number_of_retries_is_checked() {
+    let context = Context::new(Some(1)).unwrap();
+    for retries in [-1, 21] {
+        let options = Options { spacing: 0.1, retries, ..Options::default() };
+        let error = World::new(&context, &options).map(|_| ()).unwrap_err();
+        assert_eq!(error.status, Status::InvalidArgument);
+        assert!(error.message.contains("retries must be 0 (none) to 20"), "{error}");
+    }
+}
