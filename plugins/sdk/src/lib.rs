@@ -21,6 +21,7 @@ pub mod math;
 mod model;
 mod point;
 mod principal;
+pub mod radial;
 pub mod simd;
 mod table;
 pub mod tensor;
