@@ -258,6 +258,16 @@ impl Driver {
         self.state.swap(0, 1);
     }
 
+    /// The same for point `k` alone.
+    pub fn commit_point(&mut self, k: usize) {
+        let stride = self.stride;
+        for [start, end] in [&mut self.stress, &mut self.state] {
+            for at in (k..end.length).step_by(stride) {
+                start.get_mut()[at] = end.get()[at];
+            }
+        }
+    }
+
     /// Time of one point in one `update` with the step `dt` [ns/point], through the table and with everything that a call
     /// costs: the fastest of several runs over all points of the driver, since what disturbs a run only makes it slower. The engine's batches have 256 points. All runs
     /// begin at the same start state; [`simd::force`](crate::simd::force) chooses the instructions.

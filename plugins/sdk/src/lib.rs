@@ -19,6 +19,7 @@ mod drive;
 pub mod elastic;
 pub mod math;
 mod model;
+mod path;
 mod point;
 mod principal;
 pub mod radial;
@@ -32,6 +33,7 @@ pub use drive::Driver;
 pub use lahar_plugin_abi as abi;
 pub use model::Model;
 pub use nalgebra;
+pub use path::Control;
 pub use point::{Point, PointLaw, Updated};
 pub use principal::principal;
 pub use table::{
