@@ -17,12 +17,15 @@
 mod batch;
 mod drive;
 pub mod elastic;
+pub mod gap;
+pub mod isotropic;
 pub mod math;
 mod model;
 mod path;
 mod point;
 mod principal;
 pub mod radial;
+pub mod root;
 pub mod simd;
 mod table;
 pub mod tensor;
