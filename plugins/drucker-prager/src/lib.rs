@@ -6,13 +6,14 @@
 #![forbid(unsafe_code)]
 
 mod cone;
+mod tangent;
 
 use cone::{Cone, ConeKind};
 use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text,
+    PointLaw, PointStatus, State, Transfer, Updated, c_text, elastic,
 };
 use std::ffi::CStr;
 
@@ -111,6 +112,9 @@ impl Model for DruckerPrager {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
+    const HAS_TANGENT: bool = true;
+    const HAS_STORED_ENERGY: bool = true;
+    const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [_, _, friction, cohesion, dilation, _, cutoff] = values[..] else {
@@ -156,6 +160,15 @@ impl Model for DruckerPrager {
         for k in 0..batch.n() {
             batch.set_wave_speed(k, self.wave_speed_of(density[k]));
         }
+    }
+
+    fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
+        let [_, opened] = batch.state0(k);
+        self.tangent_of(batch.stress0(k), opened, batch.strain_increment(k))
+    }
+
+    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
+        elastic::energy(self.lame(), batch.stress0(k))
     }
 }
 
