@@ -67,7 +67,8 @@ impl Model for DruckerPrager {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
             .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY)
+            .advised(1.0e4, 1.0e11),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
             .typical(0.3)
             .hard(-0.999, 0.4999)
@@ -78,7 +79,8 @@ impl Model for DruckerPrager {
             .advised(0.0, 55.0),
         Parameter::real(c"cohesion", c"c", c"Pa", c"Mohr-Coulomb cohesion")
             .typical(1.0e3)
-            .hard(0.0, f64::INFINITY),
+            .hard(0.0, f64::INFINITY)
+            .advised(0.0, 1.0e8),
         Parameter::real(c"dilation_angle", c"psi", c"deg", c"Dilation angle, at most phi")
             .default(0.0)
             .hard(0.0, 89.0)
@@ -96,7 +98,8 @@ impl Model for DruckerPrager {
             c"Largest mean tension, at most c cot(phi); 0: no tension",
         )
         .default(0.0)
-        .hard(0.0, f64::INFINITY),
+        .hard(0.0, f64::INFINITY)
+        .advised(0.0, 1.0e8),
     ];
     const STATES: &'static [State] = &[
         State::scalar(
