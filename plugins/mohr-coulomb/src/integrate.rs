@@ -75,7 +75,7 @@ impl Material {
         // No return makes the deviator longer or turns it around, hence all of it is the most that can become plastic.
         let mean = (trial[0] + trial[1] + trial[2]) / 3.0;
         let most = equivalent(trial.map(|s| (s - mean) / self.elasticity.two_g));
-        let tolerance = 1e-15 * (kappa0 + most);
+        let tolerance = 1e-13 * most + 1e-16 * kappa0;
         let bracket = [kappa0, kappa0 + most * (1.0 + 1e-9)];
         let mut unique = true;
         let root = bracketed(bracket, kappa0, tolerance, |kappa| {
