@@ -87,7 +87,7 @@ impl Model for NorSand {
         .advised(1.0e3, 1.0e6),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
             .typical(0.2)
-            .hard(-0.999, 0.4999)
+            .hard(0.0, 0.49)
             .advised(0.05, 0.4),
         Parameter::real(
             c"critical_stress_ratio",

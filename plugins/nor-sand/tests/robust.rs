@@ -65,7 +65,7 @@ fn extreme_parameters_stay_on_the_yield_surface() {
     for (seed, named) in [
         [("shear_modulus", 1e9), ("elastic_exponent", 1.0), ("minimum_pressure", 5.0)],
         [("shear_modulus", 5e5), ("elastic_exponent", 0.0), ("minimum_pressure", 2e4)],
-        [("hardening_modulus", 2000.0), ("poissons_ratio", 0.4999), ("minimum_pressure", 1e3)],
+        [("hardening_modulus", 2000.0), ("poissons_ratio", 0.49), ("minimum_pressure", 1e3)],
         [("hardening_modulus", 10.0), ("poissons_ratio", 0.0), ("minimum_pressure", 1e3)],
     ]
     .iter()
