@@ -118,3 +118,45 @@ fn a_point_that_is_not_a_number_fails_alone() {
         assert_eq!(d.status_of(k), expected, "point {k}");
     }
 }
+
+/// Derivative of the end stress of point 0 by its strain increment `strain`, from central differences.
+fn differences(d: &mut Driver, strain: [f64; 6], dt: f64) -> [[f64; 6]; 6] {
+    let mut out = [[0.0; 6]; 6];
+    for j in 0..6 {
+        let mut end = |h: f64| {
+            let mut moved = strain;
+            moved[j] += h;
+            d.set_strain_increment(0, moved);
+            d.update(dt).unwrap();
+            d.stress1(0)
+        };
+        let (h, ahead, behind) = (1e-6, end(1e-6), end(-1e-6));
+        for i in 0..6 {
+            out[i][j] = (ahead[i] - behind[i]) / (2.0 * h);
+        }
+    }
+    d.set_strain_increment(0, strain);
+    out
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_stress() {
+    let strain = [2e-3, -5e-3, 1e-3, 3e-3, -2e-3, 1e-3];
+    for (choice, zero_tension, j) in
+        [(0.0, 0.0, 0.98), (1.0, 0.0, 0.98), (0.0, 1.0, 1.05), (1.0, 1.0, 1.05)]
+    {
+        let named =
+            [("equation_of_state", choice), ("zero_tension", zero_tension), ("viscosity", 20.0)];
+        let mut d = driver(&named, 1);
+        d.set_state(0, 0, j);
+        let expected = differences(&mut d, strain, 1e-3);
+        let tangent = d.tangent(0, 1e-3).unwrap();
+        for i in 0..6 {
+            for j in 0..6 {
+                let error = (tangent[i][j] - expected[i][j]).abs();
+                assert!(error < 1e-7 * K, "{i} {j}: {} {}", tangent[i][j], expected[i][j]);
+            }
+        }
+        assert_eq!(tangent[0][1] + tangent[1][0] > K, zero_tension == 0.0);
+    }
+}

@@ -1,0 +1,92 @@
+//! Water after Tait, which cavitates.
+
+use crate::fluid::{EXPONENT, EquationOfState, Fluid, STATES, Viscous};
+use lahar_plugin::{Batch, Input, Kinematics, Model, Output, Parameter, State};
+use std::ffi::CStr;
+
+/// Constants of an instance.
+pub struct TaitWater {
+    fluid: Fluid,
+    viscosity: f64,
+}
+
+impl Model for TaitWater {
+    const NAME: &'static CStr = c"tait_water";
+    const SUMMARY: &'static CStr =
+        c"Water after Tait, which cavitates at a pressure and remembers its voids";
+    const REFERENCE: &'static CStr =
+        c"Monaghan: Simulating free surface flows with SPH, J. Comput. Phys. 110 (1994), doi:10.1006/jcph.1994.1034";
+    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter::real(c"bulk_modulus", c"K", c"Pa", c"rho0 c0^2: of the liquid at volume ratio 1")
+            .typical(2.2e9)
+            .hard(f64::MIN_POSITIVE, f64::INFINITY)
+            .advised(1.0e4, 1.0e10),
+        EXPONENT,
+        Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity")
+            .default(1.0e-3)
+            .hard(0.0, f64::INFINITY)
+            .advised(0.0, 10.0),
+        Parameter::real(
+            c"background_pressure",
+            c"p_b",
+            c"Pa",
+            c"Pressure at volume ratio 1; 0: pressures are counted from that of the atmosphere",
+        )
+        .default(0.0)
+        .advised(0.0, 2.0e5),
+        Parameter::real(
+            c"cavitation_pressure",
+            c"p_c",
+            c"Pa",
+            c"Pressure at which the liquid opens, at most p_b; the default is the vapour pressure at 20 degrees C less 101325 Pa",
+        )
+        .default(-98_986.0)
+        .advised(-1.0e8, 1.0e4),
+    ];
+    const STATES: &'static [State] = STATES;
+    const INPUTS: &'static [Input] = &[Input::Density];
+    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
+    const HAS_TANGENT: bool = true;
+
+    fn check(values: &[f64]) -> Result<(), String> {
+        let [.., background, cavitation] = values[..] else {
+            return Err("expected 5 values".into());
+        };
+        if cavitation > background {
+            return Err(format!(
+                "cavitation_pressure is {cavitation} Pa, but must not exceed background_pressure, which is {background} \
+                 Pa: the liquid would be open at its own volume"
+            ));
+        }
+        Ok(())
+    }
+
+    fn new(values: &[f64]) -> Result<Self, String> {
+        let [bulk_modulus, exponent, viscosity, background_pressure, least_pressure] = values[..]
+        else {
+            return Err("expected 5 values".into());
+        };
+        let equation_of_state = EquationOfState::Tait { exponent };
+        let fluid = Fluid { bulk_modulus, equation_of_state, background_pressure, least_pressure };
+        Ok(Self { fluid, viscosity })
+    }
+
+    fn init_state(&self, batch: &mut Batch<'_>) -> Result<(), String> {
+        self.fluid.init_state(batch)
+    }
+
+    #[inline(always)]
+    fn update(&self, batch: &mut Batch<'_>) {
+        self.fluid.update::<Self>(batch, Viscous::new(self.viscosity, batch.dt()));
+    }
+
+    #[inline(always)]
+    fn wave_speed(&self, batch: &mut Batch<'_>) {
+        self.fluid.wave_speed(batch, Viscous::new(self.viscosity, batch.dt()));
+    }
+
+    fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
+        self.fluid.tangent(batch, k, Viscous::new(self.viscosity, batch.dt()))
+    }
+}
