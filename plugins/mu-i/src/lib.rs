@@ -11,7 +11,7 @@ use lahar_plugin::elastic::lame;
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text, elastic,
+    PointLaw, PointStatus, State, Transfer, Updated, c_text, elastic,
 };
 use std::ffi::CStr;
 
@@ -247,6 +247,8 @@ impl Model for MuI {
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
+    // The mean of an open and a closed point would lose the stress of the closed one.
+    const TRANSFER: &'static [Transfer] = &[Transfer::Mean, Transfer::Never, Transfer::Mean];
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [_, _, slow, fast, ..] = values[..] else {
