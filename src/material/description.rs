@@ -82,6 +82,16 @@ impl Model {
         self.outputs & mask == mask
     }
 
+    /// Whether [`Material::tangent`](super::Material::tangent) gives something.
+    pub fn offers_tangent(&self) -> bool {
+        self.functions.offers_tangent()
+    }
+
+    /// Whether [`Material::stored_energy`](super::Material::stored_energy) gives something.
+    pub fn offers_stored_energy(&self) -> bool {
+        self.functions.offers_stored_energy()
+    }
+
     /// Place of an input among those that the model wants.
     pub fn input(&self, input: Input) -> Option<usize> {
         self.inputs.iter().position(|i| *i == input)

@@ -33,6 +33,16 @@ pub(crate) struct Functions {
     pub(super) serial: Option<&'static Mutex<()>>,
 }
 
+impl Functions {
+    pub(crate) fn offers_tangent(&self) -> bool {
+        self.tangent.is_some()
+    }
+
+    pub(crate) fn offers_stored_energy(&self) -> bool {
+        self.stored_energy.is_some()
+    }
+}
+
 /// An instance of a model.
 pub(crate) struct Instance {
     model: &'static Model,

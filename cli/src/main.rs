@@ -1,0 +1,43 @@
+//! The command line of lahar. `lahar plugin ...` serves authors of constitutive models; cli/README.md tells how.
+#![forbid(unsafe_code)]
+#![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
+
+mod info;
+mod plugin;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Ends a command that could not do what it was asked for.
+const CANNOT: u8 = 2;
+
+#[derive(Parser)]
+#[command(name = "lahar", version, about = "An embeddable material point method engine")]
+struct Cli {
+    #[command(subcommand)]
+    group: Group,
+}
+
+#[derive(Subcommand)]
+enum Group {
+    /// Looks at constitutive models that come as plugins, checks and times them
+    #[command(subcommand)]
+    Plugin(Command),
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Prints what a plugin says of itself and of its models
+    Info(info::Arguments),
+}
+
+fn main() -> ExitCode {
+    let Group::Plugin(command) = Cli::parse().group;
+    let result = match command {
+        Command::Info(arguments) => info::run(&arguments),
+    };
+    result.unwrap_or_else(|text| {
+        eprintln!("error: {text}");
+        ExitCode::from(CANNOT)
+    })
+}
