@@ -25,7 +25,7 @@ pub struct Arguments {
 
 /// Prints the tables.
 pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
-    let library = Library::open(&arguments.library)?;
+    let library = Library::open(&arguments.library).map_err(|e| e.to_string())?;
     let models = library.models(arguments.model.as_deref())?;
     let described = PluginInfo::of(library.plugin, &models);
     if arguments.json {
@@ -279,6 +279,7 @@ pub fn number(value: f64) -> String {
 fn range(low: f64, high: f64) -> String {
     match (low.is_finite(), high.is_finite()) {
         (false, false) => "any".to_string(),
+        (true, false) if low == f64::MIN_POSITIVE => "above 0".to_string(),
         (true, false) => format!("from {}", number(low)),
         (false, true) => format!("to {}", number(high)),
         (true, true) => format!("{} to {}", number(low), number(high)),

@@ -2,8 +2,11 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
 
+mod bench;
+mod check;
 mod info;
 mod plugin;
+mod point;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -29,12 +32,22 @@ enum Group {
 enum Command {
     /// Prints what a plugin says of itself and of its models
     Info(info::Arguments),
+    /// Runs the conformance suite in a child process, one line a rule
+    Check(check::Arguments),
+    /// Prints nanoseconds per point
+    Bench(bench::Arguments),
+    /// Part of check
+    #[command(hide = true)]
+    CheckChild(check::child::Arguments),
 }
 
 fn main() -> ExitCode {
     let Group::Plugin(command) = Cli::parse().group;
     let result = match command {
         Command::Info(arguments) => info::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
+        Command::CheckChild(arguments) => check::child::run(&arguments),
     };
     result.unwrap_or_else(|text| {
         eprintln!("error: {text}");

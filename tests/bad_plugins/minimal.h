@@ -1,4 +1,4 @@
-/* A plugin with one elastic model, right in everything. A file that includes this spoils one thing in `spoil`. */
+/* A plugin with one elastic model, right in everything at the density 1000. A file that includes this spoils one thing in `spoil`. */
 #ifndef MINIMAL_H
 #define MINIMAL_H
 
@@ -6,6 +6,10 @@
 
 #include <math.h>
 #include <stddef.h>
+
+/* 2 G of an elastic solid without lateral contraction, and the speed of its waves at the density 1000. */
+#define MODULUS 1e5
+#define WAVE_SPEED 10.0
 
 static const lahar_host_api *host;
 
@@ -22,9 +26,9 @@ static int32_t update(const void *instance, const lahar_stress_batch *b) {
   (void)instance;
   for (k = 0; k < b->n; ++k) {
     for (c = 0; c < 6; ++c)
-      b->stress1[c * b->stride + k] = b->stress0[c * b->stride + k] + 1e6 * b->strain_increment[c * b->stride + k];
+      b->stress1[c * b->stride + k] = b->stress0[c * b->stride + k] + MODULUS * b->strain_increment[c * b->stride + k];
     b->state1[k] = b->state0[k];
-    b->wave_speed[k] = 10.0;
+    b->wave_speed[k] = WAVE_SPEED;
   }
   return LAHAR_PLUGIN_OK;
 }
@@ -32,7 +36,7 @@ static int32_t update(const void *instance, const lahar_stress_batch *b) {
 static int32_t wave_speed(const void *instance, const lahar_stress_batch *b) {
   int64_t k;
   (void)instance;
-  for (k = 0; k < b->n; ++k) b->wave_speed[k] = 10.0;
+  for (k = 0; k < b->n; ++k) b->wave_speed[k] = WAVE_SPEED;
   return LAHAR_PLUGIN_OK;
 }
 

@@ -9,10 +9,10 @@ static int32_t still_update(const void *instance, const lahar_stress_batch *b) {
     for (c = 0; c < 6; ++c) {
       const double *l = b->velocity_gradient + k;
       const double rate = 0.5 * (l[(3 * row[c] + column[c]) * b->stride] + l[(3 * column[c] + row[c]) * b->stride]);
-      b->stress1[c * b->stride + k] = b->stress0[c * b->stride + k] + 1e6 * b->dt * rate;
+      b->stress1[c * b->stride + k] = b->stress0[c * b->stride + k] + MODULUS * b->dt * rate;
     }
     b->state1[k] = b->state0[k];
-    b->wave_speed[k] = 1.0;
+    b->wave_speed[k] = WAVE_SPEED;
   }
   return LAHAR_PLUGIN_OK;
 }

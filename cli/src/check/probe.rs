@@ -1,0 +1,264 @@
+//! A model under test: calls that are told to the parent before they are made, starts, and paths through strain space.
+
+use super::report::{Event, Report, Verdict};
+use crate::info::number;
+use crate::plugin::{Library, Values};
+use crate::point::{Given, Got, Point, Points};
+use lahar::error::Error;
+use lahar::material::{Input, Kinematics, Material, Model};
+use lahar::tensor::Mat3;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+/// What ends a rule early: it is broken, or it cannot be run.
+pub type Outcome<T = Verdict> = Result<T, Verdict>;
+
+/// Length of a step unless a rule wants another [s].
+pub const DT: f64 = 1e-3;
+/// Mass density of the points [kg/m^3].
+pub const DENSITY: f64 = 1000.0;
+/// Isotropic pressures of the starts that are tried [Pa].
+const PRESSURES: [f64; 4] = [0.0, 1e3, 1e5, 1e6];
+/// Specific internal energy of a start, that of air [J/kg].
+const ENERGY: f64 = 2e5;
+
+/// A model under test.
+pub struct Probe<'a> {
+    pub library: &'a Library,
+    pub report: &'a Report,
+    pub model: &'static Model,
+    pub values: Values,
+    pub material: Arc<Material>,
+    starts: OnceCell<(Vec<Start>, Vec<String>)>,
+}
+
+/// A point from which a model can go on.
+#[derive(Clone)]
+pub struct Start {
+    pub name: String,
+    pub point: Point,
+}
+
+impl<'a> Probe<'a> {
+    pub fn new(
+        library: &'a Library,
+        report: &'a Report,
+        model: &'static Model,
+        values: Values,
+    ) -> Outcome<Self> {
+        report.tell(&Event::At { call: format!("create with {}", show(&values)) });
+        let material = library.material(model, &values).map_err(|e| Verdict::Failed {
+            sentence: format!("the model refuses its own default and typical values: {e}"),
+            input: Some(show(&values)),
+        })?;
+        Ok(Self { library, report, model, values, material, starts: OnceCell::new() })
+    }
+
+    /// Tells the parent what comes, in case that it does not come back.
+    pub fn at(&self, call: impl FnOnce() -> String) {
+        self.report.tell(&Event::At { call: call() });
+    }
+
+    fn tell(&self, call: &str, given: &[Given]) {
+        let first = given.first().map(|g| g.describe(self.model)).unwrap_or_default();
+        let more = match given.len() {
+            1 => String::new(),
+            n => format!(" (the first of {n} points)"),
+        };
+        self.at(|| format!("{call}: {first}{more}"));
+    }
+
+    /// An update that may be refused.
+    pub fn try_update(&self, material: &Arc<Material>, given: &[Given]) -> Result<Vec<Got>, Error> {
+        self.tell("update", given);
+        let mut points = Points::new(self.model, given);
+        points.update(material)?;
+        Ok((0..given.len()).map(|k| points.got(k)).collect())
+    }
+
+    /// An update of sane points.
+    pub fn update(&self, given: &[Given]) -> Outcome<Vec<Got>> {
+        self.try_update(&self.material, given).map_err(|e| self.broken(&e, &given[0]))
+    }
+
+    /// An update of one sane point.
+    pub fn one(&self, given: &Given) -> Outcome<Got> {
+        Ok(self.update(std::slice::from_ref(given))?.remove(0))
+    }
+
+    pub fn try_wave_speed(&self, given: &Given) -> Result<Got, Error> {
+        self.tell("wave_speed", std::slice::from_ref(given));
+        let mut points = Points::new(self.model, std::slice::from_ref(given));
+        points.wave_speed(&self.material)?;
+        Ok(points.got(0))
+    }
+
+    pub fn try_init_state(&self, given: &Given) -> Result<Got, Error> {
+        self.tell("init_state", std::slice::from_ref(given));
+        let mut points = Points::new(self.model, std::slice::from_ref(given));
+        points.init_state(&self.material)?;
+        Ok(points.got(0))
+    }
+
+    /// The tangent of a step, if the model offers it.
+    pub fn tangent(&self, given: &Given) -> Outcome<Option<[[f64; 6]; 6]>> {
+        self.tell("tangent", std::slice::from_ref(given));
+        let mut points = Points::new(self.model, std::slice::from_ref(given));
+        match points.tangent(&self.material) {
+            None => Ok(None),
+            Some(Err(e)) => Err(self.broken(&e, given)),
+            Some(Ok(())) => {
+                Ok(Some(std::array::from_fn(|i| std::array::from_fn(|j| points.own(6 * i + j, 0)))))
+            }
+        }
+    }
+
+    /// Stored energy per volume at the start of the step, if the model offers it.
+    pub fn stored_energy(&self, given: &Given) -> Outcome<Option<f64>> {
+        self.tell("stored_energy", std::slice::from_ref(given));
+        let mut points = Points::new(self.model, std::slice::from_ref(given));
+        match points.stored_energy(&self.material) {
+            None => Ok(None),
+            Some(Err(e)) => Err(self.broken(&e, given)),
+            Some(Ok(())) => Ok(Some(points.own(0, 0))),
+        }
+    }
+
+    fn broken(&self, error: &Error, given: &Given) -> Verdict {
+        self.failed(error.to_string(), given)
+    }
+
+    /// A broken rule with the input that shows it.
+    pub fn failed(&self, sentence: impl Into<String>, given: &Given) -> Verdict {
+        Verdict::Failed {
+            sentence: sentence.into(),
+            input: Some(format!("{}; {}", given.describe(self.model), show(&self.values))),
+        }
+    }
+
+    /// The points at rest from which the model goes on, at least one. A model need not bear every start: a gas has no pressure
+    /// without energy, a clay no stiffness without pressure.
+    pub fn starts(&self) -> Outcome<Vec<Start>> {
+        let (starts, _) = self.starts.get_or_init(|| self.find_starts());
+        match starts.is_empty() {
+            true => Err(Verdict::Skipped("there is no start, see the rule `starts`".into())),
+            false => Ok(starts.clone()),
+        }
+    }
+
+    /// The starts, and why others are none.
+    pub fn tried_starts(&self) -> &(Vec<Start>, Vec<String>) {
+        self.starts.get_or_init(|| self.find_starts())
+    }
+
+    fn find_starts(&self) -> (Vec<Start>, Vec<String>) {
+        let energy = if self.model.input(Input::InternalEnergy).is_some() { ENERGY } else { 0.0 };
+        let (mut starts, mut reasons) = (Vec::new(), Vec::new());
+        for pressure in PRESSURES {
+            let name = format!("at the pressure {} Pa", number(pressure));
+            let mut point = Point::new(self.model, pressure, DENSITY, energy);
+            if self.model.kinematics == Kinematics::DeformationGradient && pressure > 0.0 {
+                // The stress follows from F: a small compression instead.
+                point = Point::new(self.model, 0.0, DENSITY, energy);
+                point.deformation *= 1.0 - 1e-9 * pressure;
+            }
+            match self.settled(point) {
+                Ok(point) => starts.push(Start { name, point }),
+                Err(why) => reasons.push(format!("{name}: {why}")),
+            }
+        }
+        (starts, reasons)
+    }
+
+    /// The point with the first state that the model derives, after a step at rest.
+    fn settled(&self, mut point: Point) -> Result<Point, String> {
+        let text = |e: Error| e.to_string();
+        point.state = self.try_init_state(&point.at_rest(self.model)).map_err(text)?.state;
+        let given = point.at_rest(self.model);
+        let got = self.try_update(&self.material, std::slice::from_ref(&given)).map_err(text)?;
+        let got = &got[0];
+        if !got.is_done() || !got.is_finite() {
+            return Err(format!("a step at rest gives status {} and {:?}", got.status, got.stress));
+        }
+        let speed = self.try_wave_speed(&given).map_err(text)?.wave_speed;
+        if !(speed > 0.0 && speed.is_finite() && got.wave_speed > 0.0) {
+            return Err(format!("the wave speed is {speed} m/s"));
+        }
+        Ok(point.moved(self.model, &Mat3::zeros(), &given, got))
+    }
+
+    /// Points of every start after some random steps of that size [-]; where a step fails, the path ends before it.
+    pub fn loaded(&self, seed: u64, scale: f64, steps: usize) -> Outcome<Vec<Point>> {
+        let mut lcg = Lcg::new(seed);
+        let mut points = Vec::new();
+        for Start { mut point, .. } in self.starts()? {
+            let mut l = lcg.gradient(scale / DT);
+            for step in 0..steps {
+                if step % 6 == 5 {
+                    l = lcg.gradient(scale / DT);
+                }
+                let given = point.given(self.model, &l, DT);
+                let got = self.one(&given)?;
+                if !got.is_done() || !got.is_finite() {
+                    break;
+                }
+                point = point.moved(self.model, &l, &given, &got);
+            }
+            points.push(point);
+        }
+        Ok(points)
+    }
+
+    /// ρ c² of a point [Pa]: the scale of stress changes.
+    pub fn modulus(&self, point: &Point) -> Outcome<f64> {
+        let given = point.at_rest(self.model);
+        let got = self.try_wave_speed(&given).map_err(|e| self.broken(&e, &given))?;
+        Ok(point.density * got.wave_speed.powi(2))
+    }
+}
+
+/// `youngs_modulus = 1e7, ...`
+pub fn show(values: &Values) -> String {
+    let each: Vec<String> =
+        values.iter().map(|(key, value)| format!("{key} = {}", number(*value))).collect();
+    match each.is_empty() {
+        true => "no parameters".into(),
+        false => each.join(", "),
+    }
+}
+
+/// Largest component by magnitude.
+pub fn size(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Largest difference; infinity if one is not a number.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let largest = |m: f64, (a, b): (&f64, &f64)| match (a - b).abs() {
+        d if d.is_nan() => f64::INFINITY,
+        d => m.max(d),
+    };
+    a.iter().zip(b).fold(0.0, largest)
+}
+
+/// The same pseudo-random numbers on every machine: D. E. Knuth's linear congruence (MMIX).
+pub struct Lcg(u64);
+
+impl Lcg {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    /// From -1 to 1.
+    pub fn number(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// A velocity gradient [1/s] with components up to `rate`, little of it volumetric.
+    pub fn gradient(&mut self, rate: f64) -> Mat3 {
+        let l = Mat3::from_fn(|_, _| rate * self.number());
+        l - Mat3::identity() * (0.3 * l.trace())
+    }
+}
