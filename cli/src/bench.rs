@@ -1,7 +1,8 @@
 //! `lahar plugin bench`: nanoseconds per point.
 
-use crate::plugin::{Choice, Library, values};
+use crate::plugin::{Choice, Library, json, values};
 use crate::point::{Given, Point, Points};
+use crate::say;
 use clap::Args;
 use lahar::material::{Input, Material, Model};
 use lahar::tensor::Mat3;
@@ -51,9 +52,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
         }
     }
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&all).map_err(|e| e.to_string())?);
+        say(&json(&all)?);
     } else {
-        print!("{}", table(&all));
+        say(&table(&all));
     }
     Ok(ExitCode::SUCCESS)
 }

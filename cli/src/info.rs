@@ -1,6 +1,7 @@
 //! `lahar plugin info`: the tables of a plugin, to read or as JSON.
 
-use crate::plugin::Library;
+use crate::plugin::{Library, json};
+use crate::say;
 use clap::Args;
 use lahar::material::{
     Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
@@ -29,9 +30,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
     let models = library.models(arguments.model.as_deref())?;
     let described = PluginInfo::of(library.plugin, &models);
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&described).map_err(|e| e.to_string())?);
+        say(&json(&described)?);
     } else {
-        print!("{}", described.text());
+        say(&described.text());
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! The command line of lahar. `lahar plugin ...` serves authors of constitutive models; cli/README.md tells how.
 #![forbid(unsafe_code)]
-#![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
+#![allow(clippy::print_stderr)] // a command line talks to the terminal
 
 mod bench;
 mod check;
@@ -9,6 +9,7 @@ mod plugin;
 mod point;
 
 use clap::{Parser, Subcommand};
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 /// Ends a command that could not do what it was asked for.
@@ -53,4 +54,13 @@ fn main() -> ExitCode {
         eprintln!("error: {text}");
         ExitCode::from(CANNOT)
     })
+}
+
+/// Prints text. That a reader has gone away, as `head` does, is no error.
+fn say(text: &str) {
+    if let Err(e) = std::io::stdout().write_all(text.as_bytes())
+        && e.kind() != ErrorKind::BrokenPipe
+    {
+        eprintln!("error: standard output: {e}");
+    }
 }

@@ -112,3 +112,9 @@ fn parse(p: &Parameter, text: &str) -> Result<f64, String> {
         format!("expected {expected} for `{}` [{}], got `{text}`", p.key, p.unit)
     })
 }
+
+/// JSON for people, with a line break at its end.
+pub fn json(value: &impl serde::Serialize) -> Result<String, String> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| e.to_string())?;
+    Ok(text + "\n")
+}

@@ -18,6 +18,7 @@ mod kernels;
 mod loading;
 mod objectivity;
 mod order;
+mod plugin_tool;
 mod plugins;
 mod readme;
 mod register;

@@ -45,9 +45,13 @@ fn work(arguments: &Arguments, report: &Report) {
         }
     };
     let noted = |model: &&'static Model| {
+        let values = values(model, &choice.set)?;
+        if !choice.set.is_empty() {
+            library.material(model, &values)?; // a refusal is then the user's matter
+        }
         Ok(ModelNote {
             name: model.name.into(),
-            values: show(&values(model, &choice.set)?),
+            values: show(&values),
             may_print: model.capabilities & LAHAR_CAPABILITY_MAY_PRINT != 0,
         })
     };

@@ -7,7 +7,8 @@ mod process;
 mod report;
 mod rules;
 
-use crate::plugin::Choice;
+use crate::plugin::{Choice, json};
+use crate::say;
 use clap::Args;
 use process::{Ending, Workshop};
 use report::{Event, ModelNote, Verdict};
@@ -108,7 +109,7 @@ impl Suite<'_> {
 
     fn heading(&self, model: &ModelNote) {
         if !self.arguments.json {
-            println!("model {} with {}", model.name, model.values);
+            say(&format!("model {} with {}\n", model.name, model.values));
         }
     }
 
@@ -184,24 +185,21 @@ impl Suite<'_> {
     fn push(&mut self, model: Option<&str>, rule: &str, result: Judged) {
         let line = Line { model: model.map(str::to_string), rule: rule.into(), result };
         if !self.arguments.json {
-            match &line.result {
-                Judged::Ok { sentence } => println!("ok   {rule}: {sentence}"),
-                Judged::Skip { sentence } => println!("-    {rule}: {sentence}"),
+            say(&match &line.result {
+                Judged::Ok { sentence } => format!("ok   {rule}: {sentence}\n"),
+                Judged::Skip { sentence } => format!("-    {rule}: {sentence}\n"),
                 Judged::Fail { sentence, input } => {
-                    println!("FAIL {rule}: {sentence}");
-                    if let Some(input) = input {
-                        println!("     input: {input}");
-                    }
+                    let input = input.as_ref().map(|i| format!("     input: {i}\n"));
+                    format!("FAIL {rule}: {sentence}\n{}", input.unwrap_or_default())
                 }
-            }
+            });
         }
         self.lines.push(line);
     }
 
     fn finish(self) -> Result<ExitCode, String> {
         if self.arguments.json {
-            let text = serde_json::to_string_pretty(&self.lines).map_err(|e| e.to_string())?;
-            println!("{text}");
+            say(&json(&self.lines)?);
         }
         let broken = self.lines.iter().any(|l| matches!(l.result, Judged::Fail { .. }));
         Ok(if broken { ExitCode::from(BROKEN) } else { ExitCode::SUCCESS })

@@ -2,16 +2,19 @@
 
 use crate::check::probe::{DT, Lcg, Outcome, Probe, distance, size};
 use crate::check::report::Verdict;
-use crate::point::{Given, Got};
+use crate::point::{Given, Got, Points};
 use lahar_plugin_abi::{
     LAHAR_CAPABILITY_DETERMINISTIC, LAHAR_CAPABILITY_POINTWISE, LAHAR_CAPABILITY_THREAD_SAFE,
 };
 use std::slice::from_ref;
 use std::sync::Barrier;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// How long two threads run at the same time.
 const TOGETHER: Duration = Duration::from_millis(150);
+/// How many batches each of them does at least.
+const BATCHES: usize = 200;
 
 /// Steps of several sizes from every start and from loaded points.
 fn tasks(probe: &Probe<'_>, seed: u64) -> Outcome<Vec<Given>> {
@@ -107,24 +110,28 @@ pub fn threads(probe: &Probe<'_>) -> Outcome {
     let batches = [tasks(probe, 21)?, tasks(probe, 22)?];
     let alone = [probe.update(&batches[0])?, probe.update(&batches[1])?];
     probe.at(|| "update on two threads at once".into());
-    let (barrier, begin) = (Barrier::new(2), Instant::now());
-    let work = |batch: &[Given], alone: &[Got]| {
-        let mut points = crate::point::Points::new(model, batch);
+    let barrier = Barrier::new(2);
+    let done = [AtomicUsize::new(0), AtomicUsize::new(0)];
+    let work = |i: usize| {
+        let (batch, alone) = (&batches[i], &alone[i]);
+        let mut points = Points::new(model, batch);
         barrier.wait();
-        while begin.elapsed() < TOGETHER {
-            if points.update(material).is_err() {
-                return Some(0);
-            }
-            let off = (0..batch.len()).find(|k| points.got(*k).bits() != alone[*k].bits());
-            if off.is_some_and(|k| alone[k].is_done()) {
+        let begin = Instant::now();
+        // A busy machine may let one thread wait: both go on until both have worked.
+        while begin.elapsed() < TOGETHER || done[1 - i].load(Ordering::Relaxed) < BATCHES {
+            let failed = points.update(material).is_err();
+            let differs = |k: &usize| points.got(*k).bits() != alone[*k].bits();
+            let off = (0..batch.len()).find(|k| failed || alone[*k].is_done() && differs(k));
+            done[i].fetch_add(if off.is_some() { BATCHES } else { 1 }, Ordering::Relaxed);
+            if off.is_some() {
                 return off;
             }
         }
         None
     };
     let off = std::thread::scope(|scope| {
-        let second = scope.spawn(|| work(&batches[1], &alone[1]));
-        let first = work(&batches[0], &alone[0]).map(|k| (0, k));
+        let second = scope.spawn(|| work(1));
+        let first = work(0).map(|k| (0, k));
         first.or(second.join().ok().flatten().map(|k| (1, k)))
     });
     match off {
