@@ -33,13 +33,14 @@ impl Context {
     /// One thread means that everything runs on the calling thread and none is started.
     ///
     /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
-    /// number, or a `LAHAR_SIMD` that is unknown or that the processor lacks; [`Status::Threads`] if the system gives no threads.
+    /// number, a `LAHAR_SIMD` that is unknown or that the processor lacks, or a `LAHAR_CHECK_PLUGINS` other than 0 and 1; [`Status::Threads`] if the system gives no threads.
     pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
         Self::with_isa(threads, Isa::of_environment()?)
     }
 
     /// The same with a given instruction set.
     pub fn with_isa(threads: Option<usize>, isa: Isa) -> Result<Arc<Context>> {
+        plugin::checks()?;
         let threads = match threads {
             Some(threads) => checked_threads(threads, "the thread count")?,
             None => threads_of_environment()?,

@@ -66,6 +66,8 @@ pub enum Status {
     NonFinite = -3,
     /// The object was poisoned by an earlier call; it can only be queried and freed.
     Poisoned = -4,
+    /// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is poisoned.
+    PluginBroken = -5,
 }
 
 impl Status {
@@ -105,6 +107,7 @@ impl Status {
         Status::MaterialFailed,
         Status::NonFinite,
         Status::Poisoned,
+        Status::PluginBroken,
     ];
 }
 

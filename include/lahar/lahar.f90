@@ -52,6 +52,7 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_MATERIAL_FAILED = -2_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_NON_FINITE = -3_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_POISONED = -4_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_BROKEN = -5_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_VERSION_MAJOR = 0_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_VERSION_MINOR = 1_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_VERSION_PATCH = 0_c_int32_t

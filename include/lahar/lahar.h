@@ -137,6 +137,9 @@ struct lahar_host_api;
 // The object was poisoned by an earlier call; it can only be queried and freed.
 #define LAHAR_ERROR_POISONED -4
 
+// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is poisoned.
+#define LAHAR_ERROR_PLUGIN_BROKEN -5
+
 // What a function answers: 0 done; positive: refused, nothing has changed; negative: the object is poisoned, it
 // answers queries and can be freed. 1 to 99: a mistake of the caller; 100 to 199: numerics; 200 to 299: files,
 // plugins and threads.
@@ -232,6 +235,8 @@ typedef struct lahar_plugin_info {
 // set. With more than 1 the context starts that many threads of its own; they end with it.
 // `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
 // The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
+// LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
+// contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
 // Thread: any
 lahar_status lahar_context_create(int32_t threads,

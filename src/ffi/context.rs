@@ -83,6 +83,8 @@ unsafe impl Grows for lahar_plugin_info {
 /// set. With more than 1 the context starts that many threads of its own; they end with it.
 /// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
 /// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
+/// LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
+/// contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
 /// Thread: any
 #[unsafe(no_mangle)]

@@ -59,6 +59,39 @@ fn restore(environment: &Environment) {
     unsafe { fesetenv(environment) };
 }
 
+/// How this thread computes: rounding, traps, and whether tiny numbers are taken for zero.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Control(u64);
+
+impl Control {
+    /// What differs from another, in words.
+    pub(crate) fn changed(self, from: Control) -> &'static str {
+        let bits = self.0 ^ from.0;
+        match cfg!(target_arch = "x86_64") {
+            true if bits & 0x6000 != 0 => "the rounding",
+            true if bits & 0x1f80 != 0 => "the traps",
+            true if bits & 0x8040 != 0 => "tiny numbers are taken for zero or no longer",
+            true => "the x87 control word",
+            false => "its control bits",
+        }
+    }
+}
+
+/// The control bits of this thread; the flags that operations raise are none of them.
+pub(crate) fn control() -> Control {
+    let environment = current();
+    let word = |first: usize, count: usize| {
+        environment.0[first..first + count].iter().rev().fold(0, |word, byte| {
+            // SAFETY: fegetenv has written at least 32 bytes on x86-64 and 8 on AArch64.
+            word << 8 | u64::from(unsafe { byte.assume_init() })
+        })
+    };
+    #[cfg(target_arch = "x86_64")]
+    return Control(word(0, 2) << 32 | word(28, 4) & !0x3f); // the x87 control word, and MXCSR less its flags
+    #[cfg(not(target_arch = "x86_64"))]
+    return Control(word(0, 4)); // FPCR
+}
+
 /// While it lives, this thread runs in the default environment; the drop puts the host's back.
 pub(super) struct Guard {
     host: Environment,
@@ -118,6 +151,10 @@ mod tests {
         {
             let _guard = Guard::new();
             assert_eq!(round(), nearest);
+            let inside = control();
+            assert!(with_host(control) != inside && control() == inside);
+            std::hint::black_box(std::hint::black_box(1.0_f64) / 3.0); // raises a flag, no control bit
+            assert!(control() == inside);
             assert_eq!(with_host(round), UPWARD);
             assert_eq!(round(), nearest);
         }

@@ -67,6 +67,8 @@ pub const LAHAR_ERROR_MATERIAL_FAILED: i32 = -2;
 pub const LAHAR_ERROR_NON_FINITE: i32 = -3;
 /// The object was poisoned by an earlier call; it can only be queried and freed.
 pub const LAHAR_ERROR_POISONED: i32 = -4;
+/// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is poisoned.
+pub const LAHAR_ERROR_PLUGIN_BROKEN: i32 = -5;
 
 /// Each status with the constant that carries its value and the constant's name.
 pub(super) const TABLE: [(Status, i32, &CStr); Status::ALL.len()] = [
@@ -99,6 +101,7 @@ pub(super) const TABLE: [(Status, i32, &CStr); Status::ALL.len()] = [
     (Status::MaterialFailed, LAHAR_ERROR_MATERIAL_FAILED, c"LAHAR_ERROR_MATERIAL_FAILED"),
     (Status::NonFinite, LAHAR_ERROR_NON_FINITE, c"LAHAR_ERROR_NON_FINITE"),
     (Status::Poisoned, LAHAR_ERROR_POISONED, c"LAHAR_ERROR_POISONED"),
+    (Status::PluginBroken, LAHAR_ERROR_PLUGIN_BROKEN, c"LAHAR_ERROR_PLUGIN_BROKEN"),
 ];
 
 // The constants are written out because the header generator reads no enums of the engine; they cannot drift.

@@ -148,6 +148,23 @@ pub enum Input {
     ParticleId = abi::LAHAR_INPUT_PARTICLE_ID,
 }
 
+impl Input {
+    /// Its name: that of the constant of the plugin ABI in small letters.
+    pub fn key(self) -> &'static str {
+        match self {
+            Input::Density => "density",
+            Input::ElementLength => "element_length",
+            Input::Temperature => "temperature",
+            Input::InternalEnergy => "internal_energy",
+            Input::PorePressure => "pore_pressure",
+            Input::PositionX => "position_x",
+            Input::PositionY => "position_y",
+            Input::PositionZ => "position_z",
+            Input::ParticleId => "particle_id",
+        }
+    }
+}
+
 /// What becomes of a state variable when points are merged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]

@@ -1,5 +1,6 @@
 //! Calls the functions of a model: builds the C batch from the safe one and turns return values into errors.
 
+use super::checked::{self, checks};
 use super::host::take_error;
 use crate::error::{Error, Result, Status};
 use crate::material::{Kinematics, Model, StressBatch};
@@ -43,10 +44,43 @@ impl Functions {
     }
 }
 
+/// The functions that work on a batch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verb {
+    InitState,
+    Update,
+    WaveSpeed,
+    Tangent,
+    StoredEnergy,
+}
+
+impl Verb {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::InitState => "init_state",
+            Self::Update => "update",
+            Self::WaveSpeed => "wave_speed",
+            Self::Tangent => "tangent",
+            Self::StoredEnergy => "stored_energy",
+        }
+    }
+
+    /// Components of the array of its own that an extension's function writes; 0 for the others.
+    pub(super) fn own_components(self) -> usize {
+        match self {
+            Self::Tangent => 36,
+            Self::StoredEnergy => 1,
+            _ => 0,
+        }
+    }
+}
+
 /// An instance of a model.
 pub(crate) struct Instance {
     model: &'static Model,
     pointer: *mut c_void,
+    /// Whether every call is checked, see `checked.rs`.
+    checked: bool,
 }
 
 // SAFETY: the ABI lets any thread call an instance; `serial` keeps threads apart where the model asks for it, and
@@ -84,7 +118,7 @@ impl Instance {
         if code != LAHAR_PLUGIN_OK {
             return Err(refused(take_error()));
         }
-        Ok(Self { model, pointer })
+        Ok(Self { model, pointer, checked: checks()? })
     }
 
     pub(crate) fn model(&self) -> &'static Model {
@@ -115,7 +149,7 @@ impl Instance {
         self.need_output("energy", LAHAR_OUTPUT_ENERGY, batch.energy.len())?;
         self.need_output("dt_factor", LAHAR_OUTPUT_DT_FACTOR, batch.dt_factor.len())?;
         self.need_output("status", LAHAR_OUTPUT_STATUS, batch.status.len())?;
-        self.call("update", self.model.functions.update, batch)
+        self.call(Verb::Update, batch, &mut [])
     }
 
     pub(crate) fn wave_speed(&self, batch: &mut StressBatch<'_>) -> Result<()> {
@@ -125,16 +159,15 @@ impl Instance {
         need("wave_speed", batch.wave_speed.len())?;
         self.need_state("state0", batch.state0.len())?;
         self.need_output("diffusivity", LAHAR_OUTPUT_DIFFUSIVITY, batch.diffusivity.len())?;
-        self.call("wave_speed", self.model.functions.wave_speed, batch)
+        self.call(Verb::WaveSpeed, batch, &mut [])
     }
 
     pub(crate) fn init_state(&self, batch: &mut StressBatch<'_>) -> Result<()> {
-        let Some(init_state) = self.model.functions.init_state else { return Ok(()) };
-        if batch.n == 0 {
+        if batch.n == 0 || self.model.functions.init_state.is_none() {
             return Ok(());
         }
         self.need_state("state1", batch.state1.len())?;
-        self.call("init_state", init_state, batch)
+        self.call(Verb::InitState, batch, &mut [])
     }
 
     /// Writes dσ1/dΔε, 36 components, into `out`; None if the model does not offer it.
@@ -143,8 +176,8 @@ impl Instance {
         batch: &mut StressBatch<'_>,
         out: &mut [f64],
     ) -> Option<Result<()>> {
-        let function = self.model.functions.tangent?;
-        Some(self.call_with_output("tangent", function, batch, out, 36))
+        self.model.functions.tangent?;
+        Some(self.call(Verb::Tangent, batch, out))
     }
 
     /// Writes the stored energy per volume into `out`; None if the model does not offer it.
@@ -153,22 +186,8 @@ impl Instance {
         batch: &mut StressBatch<'_>,
         out: &mut [f64],
     ) -> Option<Result<()>> {
-        let function = self.model.functions.stored_energy?;
-        Some(self.call_with_output("stored_energy", function, batch, out, 1))
-    }
-
-    fn call_with_output(
-        &self,
-        name: &str,
-        function: WithOutput,
-        batch: &mut StressBatch<'_>,
-        out: &mut [f64],
-        components: usize,
-    ) -> Result<()> {
-        need(name, out.len())?;
-        let out = array_mut(name, out, components, batch.stride)?;
-        // SAFETY: as in `call`; `out` has the components that the extension writes.
-        self.run(name, batch, |raw| unsafe { function(self.pointer, raw, out) })
+        self.model.functions.stored_energy?;
+        Some(self.call(Verb::StoredEnergy, batch, out))
     }
 
     fn need_state(&self, name: &str, length: usize) -> Result<()> {
@@ -179,23 +198,46 @@ impl Instance {
         if self.model.gives(output) { need(name, length) } else { Ok(()) }
     }
 
-    fn call(&self, name: &str, function: Call, batch: &mut StressBatch<'_>) -> Result<()> {
-        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
-        // arrays are borrowed for the call, and mutable borrows do not alias.
-        self.run(name, batch, |raw| unsafe { function(self.pointer, raw) })
+    /// `own`: the array of its own that an extension's function writes; empty for the others.
+    fn call(&self, verb: Verb, batch: &mut StressBatch<'_>, own: &mut [f64]) -> Result<()> {
+        if self.checked {
+            checked::call(self, verb, batch, own)
+        } else {
+            self.run(verb, batch, own)
+        }
     }
 
-    fn run(
+    /// Calls the model as it is.
+    pub(super) fn run(
         &self,
-        name: &str,
+        verb: Verb,
         batch: &mut StressBatch<'_>,
-        function: impl FnOnce(&lahar_stress_batch) -> i32,
+        own: &mut [f64],
     ) -> Result<()> {
+        let name = verb.name();
         let inputs = self.input_pointers(batch)?;
         let raw = self.raw_batch(batch, &inputs)?;
+        if verb.own_components() > 0 {
+            need(name, own.len())?;
+        }
+        let own = array_mut(name, own, verb.own_components(), batch.stride)?;
+        let functions = &self.model.functions;
+        let with_own = |function: Option<WithOutput>| {
+            // SAFETY: as below; `own` has the components that the extension writes.
+            function.map_or(LAHAR_PLUGIN_OK, |f| unsafe { f(self.pointer, &raw, own) })
+        };
+        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
+        // arrays are borrowed for the call, and mutable borrows do not alias.
+        let plain = |function: Call| unsafe { function(self.pointer, &raw) };
         let _one_at_a_time = self.serial();
         take_error();
-        let code = function(&raw);
+        let code = match verb {
+            Verb::Update => plain(functions.update),
+            Verb::WaveSpeed => plain(functions.wave_speed),
+            Verb::InitState => functions.init_state.map_or(LAHAR_PLUGIN_OK, plain),
+            Verb::Tangent => with_own(functions.tangent),
+            Verb::StoredEnergy => with_own(functions.stored_energy),
+        };
         if code == LAHAR_PLUGIN_OK {
             return Ok(());
         }
@@ -207,6 +249,20 @@ impl Instance {
                 self.model.name, self.model.plugin_id
             ),
         ))
+    }
+
+    /// Checks the arrays of a batch without a call.
+    pub(super) fn check(
+        &self,
+        verb: Verb,
+        batch: &mut StressBatch<'_>,
+        own: &mut [f64],
+    ) -> Result<()> {
+        self.raw_batch(batch, &self.input_pointers(batch)?)?;
+        if verb.own_components() > 0 {
+            need(verb.name(), own.len())?;
+        }
+        array_mut(verb.name(), own, verb.own_components(), batch.stride).map(|_| ())
     }
 
     fn serial(&self) -> Option<MutexGuard<'static, ()>> {

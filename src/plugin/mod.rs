@@ -1,15 +1,17 @@
 //! The engine's side of the plugin ABI; all of the engine's `unsafe` that concerns plugins is in this folder.
 //!
 //! `load` finds and opens a library, `register` takes the entry of a plugin that is linked in, `handshake` checks its tables and copies them into safe descriptions, `adapter`
-//! calls its functions with batches, `host` is the table of functions that a plugin gets.
+//! calls its functions with batches, `checked` does so on guarded copies where the user asks for it, `host` is the table of functions that a plugin gets.
 
 mod adapter;
+mod checked;
 mod handshake;
 mod host;
 mod load;
 mod register;
 
 pub(crate) use adapter::{Functions, Instance};
+pub(crate) use checked::checks;
 pub(crate) use load::load;
 pub use register::RustEntry;
 pub(crate) use register::{StaticEntry, register};

@@ -49,8 +49,10 @@ impl Outcome {
 /// Updates stress, state and energy of a chunk.
 pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> Outcome {
     let mut batch = StressBatch { dt, time: piece.time, step: piece.step, ..piece.scratch.batch() };
-    let result = piece.material.update(&mut batch);
-    if let Err(error) = result.and_then(|()| check_points(piece)) {
+    if let Err(error) = piece.material.update(&mut batch) {
+        return Outcome::failed(error.at(Place { body: Some(piece.body), ..Place::default() }));
+    }
+    if let Err(error) = check_points(piece) {
         return Outcome::failed(error);
     }
     let factor = wanted_factor(piece);

@@ -6,6 +6,7 @@ mod setup;
 mod support;
 
 mod bad_input;
+mod checked;
 mod conditions;
 mod determinism;
 mod equations;

@@ -1,0 +1,15 @@
+/* A model that adds to its end state, as if it held the start. */
+#include "minimal.h"
+
+static int32_t bad_update(const void *instance, const lahar_stress_batch *b) {
+  int64_t k;
+  double before = b->state1[0];
+  update(instance, b);
+  for (k = 0; k < b->n; ++k) b->state1[k] = before + 1.0;
+  return LAHAR_PLUGIN_OK;
+}
+
+static void spoil(void) {
+  model.update = bad_update;
+  model.capabilities |= LAHAR_CAPABILITY_DETERMINISTIC | LAHAR_CAPABILITY_POINTWISE;
+}
