@@ -13,6 +13,7 @@ use crate::plugin::{self, StaticEntry};
 use crate::simd::Isa;
 use lahar_plugin_abi::{LAHAR_CAPABILITY_MAY_PRINT, LAHAR_CAPABILITY_MAY_STOP};
 use pool::Pool;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -26,6 +27,7 @@ pub struct Context {
     used: Vec<AtomicBool>,
     log: Arc<LogQueue>,
     plugins: RwLock<Vec<&'static Plugin>>,
+    capsules: RwLock<Option<PathBuf>>,
 }
 
 impl Context {
@@ -33,7 +35,8 @@ impl Context {
     /// One thread means that everything runs on the calling thread and none is started.
     ///
     /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
-    /// number, a `LAHAR_SIMD` that is unknown or that the processor lacks, or a `LAHAR_CHECK_PLUGINS` other than 0 and 1; [`Status::Threads`] if the system gives no threads.
+    /// number, a `LAHAR_SIMD` that is unknown or that the processor lacks, or a `LAHAR_CHECK_PLUGINS` other than 0 and 1; [`Status::Threads`] if the system gives no threads;
+    /// [`Status::File`] if `LAHAR_CAPSULES` is no folder, see [`Context::set_capsule_folder`].
     pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
         Self::with_isa(threads, Isa::of_environment()?)
     }
@@ -48,7 +51,14 @@ impl Context {
         let log = Arc::new(LogQueue::default());
         let pool = if threads > 1 { Some(Pool::new(threads, &log)?) } else { None };
         let used = (0..threads).map(|_| AtomicBool::new(false)).collect();
-        Ok(Arc::new(Context { pool, isa, used, log, plugins: RwLock::default() }))
+        let capsules = match std::env::var_os("LAHAR_CAPSULES") {
+            Some(folder) if !folder.is_empty() => {
+                Some(checked_folder(Path::new(&folder), "LAHAR_CAPSULES")?)
+            }
+            _ => None,
+        };
+        let (plugins, capsules) = (RwLock::default(), RwLock::new(capsules));
+        Ok(Arc::new(Context { pool, isa, used, log, plugins, capsules }))
     }
 
     /// The instruction set that kernels use: what `LAHAR_SIMD` asks for (`scalar`, `avx2`, `avx512`), or the best that the processor has.
@@ -199,6 +209,24 @@ impl Context {
         })
     }
 
+    /// The plugin that offers a model of this context.
+    pub fn plugin_of(&self, model: &Model) -> Option<&'static Plugin> {
+        self.plugins().into_iter().find(|p| p.models.iter().any(|m| std::ptr::eq(m, model)))
+    }
+
+    /// Sets the folder to which a step that fails at a point writes a [capsule](crate::material::Capsule); `None` for nowhere. At first it
+    /// is that of the environment variable `LAHAR_CAPSULES`. Error: [`Status::File`] if it is no folder.
+    pub fn set_capsule_folder(&self, folder: Option<&Path>) -> Result<()> {
+        let folder = folder.map(|folder| checked_folder(folder, "the folder of failure capsules"));
+        *self.capsules.write().unwrap_or_else(PoisonError::into_inner) = folder.transpose()?;
+        Ok(())
+    }
+
+    /// The folder of capsules, if there is one.
+    pub fn capsule_folder(&self) -> Option<PathBuf> {
+        self.capsules.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// Queues a line for the log; [`Context::flush_log`] delivers it.
     pub fn log(&self, level: LogLevel, text: &str) {
         self.log.push(level as i32, text);
@@ -218,6 +246,19 @@ impl Context {
     pub(crate) fn log_queue(&self) -> &Arc<LogQueue> {
         &self.log
     }
+}
+
+/// The folder by its full path, so that it stays what it is when the process goes elsewhere.
+fn checked_folder(folder: &Path, what: &str) -> Result<PathBuf> {
+    let full = folder.canonicalize().and_then(|full| match full.is_dir() {
+        true => Ok(full),
+        false => Err(std::io::ErrorKind::NotADirectory.into()),
+    });
+    full.map_err(|why| {
+        let folder = folder.display();
+        let text = format!("{what} must be a folder that exists, got `{folder}`: {why}");
+        Error::new(Status::File, text)
+    })
 }
 
 fn threads_of_environment() -> Result<usize> {

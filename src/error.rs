@@ -77,7 +77,7 @@ impl Status {
     }
 
     /// Every status, in the order of the documentation.
-    pub const ALL: [Status; 29] = [
+    pub const ALL: [Status; 30] = [
         Status::Ok,
         Status::NullArgument,
         Status::StructSize,

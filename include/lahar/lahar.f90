@@ -423,6 +423,15 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_context_register_plugin
 
+    function lahar_context_set_capsule_folder(context, folder) &
+        bind(c, name="lahar_context_set_capsule_folder") result(answer)
+      import :: c_char, c_int32_t, c_ptr
+      implicit none
+      type(c_ptr), value :: context
+      character(kind=c_char), intent(in), optional :: folder(*)
+      integer(c_int32_t) :: answer
+    end function lahar_context_set_capsule_folder
+
     function lahar_context_plugin_count(context, plugins) &
         bind(c, name="lahar_context_plugin_count") result(answer)
       import :: c_int32_t, c_int64_t, c_ptr
@@ -1171,6 +1180,7 @@ module lahar
   public :: lahar_log_stderr
   public :: lahar_context_load_plugin
   public :: lahar_context_register_plugin
+  public :: lahar_context_set_capsule_folder
   public :: lahar_context_plugin_count
   public :: lahar_context_plugin_info
   public :: lahar_last_error_message
@@ -1258,6 +1268,7 @@ module lahar
     procedure :: threads_used => context_threads_used
     procedure :: log_to_stderr => context_log_to_stderr
     procedure :: load_plugin => context_load_plugin
+    procedure :: set_capsule_folder => context_set_capsule_folder
   end type lahar_context
 
   !> A constitutive model with its parameters.
@@ -1404,6 +1415,15 @@ contains
     character(*), intent(inout), optional :: errmsg
     call finish(lahar_context_load_plugin(self%handle, to_c(name_or_path)), stat, errmsg)
   end subroutine context_load_plugin
+
+  !> Sets the folder to which a step that fails writes a capsule of its first failing point; an empty text: none are written.
+  subroutine context_set_capsule_folder(self, folder, stat, errmsg)
+    class(lahar_context), intent(in) :: self
+    character(*), intent(in) :: folder
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    call finish(lahar_context_set_capsule_folder(self%handle, to_c(folder)), stat, errmsg)
+  end subroutine context_set_capsule_folder
 
   ! ---- material
 

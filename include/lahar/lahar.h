@@ -237,7 +237,8 @@ typedef struct lahar_plugin_info {
 // The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
 // LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
 // contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE
+// (LAHAR_CAPSULES, see lahar_context_set_capsule_folder).
 // Thread: any
 lahar_status lahar_context_create(int32_t threads,
                                   lahar_context **context);
@@ -310,6 +311,16 @@ lahar_status lahar_context_load_plugin(lahar_context *context,
 lahar_status lahar_context_register_plugin(lahar_context *context,
                                            lahar_plugin_entry_callback plugin,
                                            int64_t *index);
+
+// Sets the folder to which a step that fails at a point writes a capsule: a small JSON file with the model, its parameters, and all that
+// the model was given and answered at the first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Files that are
+// there are kept. The message of the step's error says where the capsule is.
+//
+// `folder`: a folder that exists; NULL or "": no capsules. At first it is that of the environment variable LAHAR_CAPSULES.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (there is no such folder; nothing has changed).
+// Thread: any
+lahar_status lahar_context_set_capsule_folder(lahar_context *context,
+                                              const char *folder);
 
 // Number of plugins that are loaded into the context.
 //

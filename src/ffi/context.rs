@@ -12,6 +12,7 @@ use crate::plugin::StaticEntry;
 use lahar_plugin_abi::{lahar_host_api, lahar_plugin_desc};
 use std::ffi::{CStr, c_char, c_void};
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Threads, log and loaded plugins. Freed by lahar_context_free; worlds, materials and views keep it alive.
@@ -85,7 +86,8 @@ unsafe impl Grows for lahar_plugin_info {
 /// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
 /// LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
 /// contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE
+/// (LAHAR_CAPSULES, see lahar_context_set_capsule_folder).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_create(
@@ -287,6 +289,27 @@ pub unsafe extern "C" fn lahar_context_register_plugin(
         let position = cell.context.register(entry)?;
         index.inspect(|index| index.set(position as i64));
         Ok(())
+    })
+}
+
+/// Sets the folder to which a step that fails at a point writes a capsule: a small JSON file with the model, its parameters, and all that
+/// the model was given and answered at the first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Files that are
+/// there are kept. The message of the step's error says where the capsule is.
+///
+/// `folder`: a folder that exists; NULL or "": no capsules. At first it is that of the environment variable LAHAR_CAPSULES.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (there is no such folder; nothing has changed).
+/// Thread: any
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn lahar_context_set_capsule_folder(
+    context: *mut lahar_context,
+    folder: *const c_char,
+) -> lahar_status {
+    entry("lahar_context_set_capsule_folder", |scope| {
+        // SAFETY: the host passes NULL or a live handle.
+        let cell = unsafe { scope.context(context) }?;
+        // SAFETY: the host passes NULL or a text.
+        let folder = if folder.is_null() { "" } else { unsafe { text(folder, "folder") }? };
+        cell.context.set_capsule_folder((!folder.is_empty()).then(|| Path::new(folder)))
     })
 }
 

@@ -1,9 +1,11 @@
 //! What the engine knows of constitutive models: descriptions, materials (a model with its parameter values), batches.
 
 mod batch;
+mod capsule;
 mod description;
 
 pub use batch::StressBatch;
+pub use capsule::{Capsule, End, Named, Number, Occasion, Replay};
 pub use description::{
     Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
     Transfer,

@@ -33,7 +33,6 @@ pub mod update_grid;
 pub mod update_strain;
 pub mod update_stress;
 
-use crate::error::Result;
 use crate::world::hooks::HookPoint;
 use crate::world::state::{Piece, State};
 
@@ -50,10 +49,10 @@ use retry::keep_start;
 use time_step::Limits;
 use update_grid::update_grid;
 use update_strain::update_strain;
-use update_stress::{Outcome, update_stress};
+use update_stress::{Failure, Outcome, update_stress};
 
 /// One step of length `dt` [s]. On success gives the limits of the next time step.
-pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits> {
+pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits, Box<Failure>> {
     check_radii(world)?;
     locate(world)?;
     if world.options.retries > 0 {

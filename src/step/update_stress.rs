@@ -4,11 +4,26 @@
 
 use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP};
 
-use crate::error::{Error, Place, Result, Status};
-use crate::material::StressBatch;
+use crate::error::{Error, Place, Status};
+use crate::material::{Capsule, Occasion, StressBatch};
 use crate::simd::{Kernel, LANES, Vector};
 use crate::step::time_step::Limits;
 use crate::world::state::{ChunkStage, Piece};
+
+/// Why a step failed, and the call of the model at the point where it did, if there is one.
+#[derive(Debug)]
+pub struct Failure {
+    /// Why.
+    pub error: Error,
+    /// The call.
+    pub capsule: Option<Capsule>,
+}
+
+impl From<Error> for Box<Failure> {
+    fn from(error: Error) -> Self {
+        Self::new(Failure { error, capsule: None })
+    }
+}
 
 /// What the stress updates of a step lead to.
 #[derive(Debug)]
@@ -16,7 +31,7 @@ pub struct Outcome {
     limits: Limits,
     /// Smallest factor on the time step that a point wants [–]; infinity if none wants one below 1.
     factor: f64,
-    failure: Option<Box<Error>>,
+    failure: Option<Box<Failure>>,
 }
 
 impl Default for Outcome {
@@ -36,13 +51,13 @@ impl Outcome {
     }
 
     /// The limits of the step after one of length `dt` [s], or the failure.
-    pub fn limits(self, dt: f64) -> Result<Limits> {
+    pub fn limits(self, dt: f64) -> Result<Limits, Box<Failure>> {
         let limits = Limits { wanted_dt: dt * self.factor, ..self.limits };
-        self.failure.map_or(Ok(limits), |error| Err(*error))
+        self.failure.map_or(Ok(limits), Err)
     }
 
-    fn failed(error: Error) -> Self {
-        Self { failure: Some(Box::new(error)), ..Self::default() }
+    fn failed(failure: impl Into<Box<Failure>>) -> Self {
+        Self { failure: Some(failure.into()), ..Self::default() }
     }
 }
 
@@ -52,13 +67,13 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     if let Err(error) = piece.material.update(&mut batch) {
         return Outcome::failed(error.at(Place { body: Some(piece.body), ..Place::default() }));
     }
-    if let Err(error) = check_points(piece) {
-        return Outcome::failed(error);
+    if let Some(failure) = failed_point(piece, dt) {
+        return Outcome::failed(failure);
     }
     let factor = wanted_factor(piece);
     let (speed, finite) = piece.isa.dispatch(Commit(piece));
     if !finite {
-        return Outcome::failed(not_finite(piece));
+        return Outcome::failed(not_finite(piece, dt));
     }
     let diffusivities = piece.scratch.diffusivity.iter().take(piece.chunk.len);
     let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
@@ -67,13 +82,13 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     Outcome { limits, factor, failure: None }
 }
 
-fn check_points<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<()> {
+fn failed_point<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Option<Box<Failure>> {
     let status = &piece.scratch.status[..piece.chunk.len];
     if status.iter().fold(0, |worst, s| worst.max(*s)) < LAHAR_POINT_FAILED {
-        return Ok(());
+        return None;
     }
     let k = status.iter().position(|s| *s >= LAHAR_POINT_FAILED).unwrap_or(0);
-    Err(fault(piece, k, Status::MaterialFailed, "could not update"))
+    Some(fault(piece, (k, dt), Status::MaterialFailed, "could not update"))
 }
 
 /// Smallest factor on the time step that a point of the chunk wants; infinity if none does.
@@ -155,7 +170,7 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
     }
 }
 
-fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>) -> Error {
+fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Box<Failure> {
     let (chunk, s) = (&piece.chunk, &piece.scratch);
     let given = |output: &[f64], k: usize| output.get(k).is_none_or(|value| value.is_finite());
     let good = |k: &usize| {
@@ -168,13 +183,18 @@ fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>) -> Error {
     let k = (0..chunk.len).find(|k| !good(k));
     fault(
         piece,
-        k.unwrap_or(0),
+        (k.unwrap_or(0), dt),
         Status::NonFinite,
         "gave or took a value that is not finite, or gave a negative wave speed,",
     )
 }
 
-fn fault<const D: usize>(piece: &Piece<'_, '_, D>, k: usize, status: Status, what: &str) -> Error {
+fn fault<const D: usize>(
+    piece: &Piece<'_, '_, D>,
+    (k, dt): (usize, f64),
+    status: Status,
+    what: &str,
+) -> Box<Failure> {
     let (body, model) = (piece.body, piece.material.model().name);
     let particle = piece.ids[piece.chunk.first + k];
     let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
@@ -185,9 +205,8 @@ fn fault<const D: usize>(piece: &Piece<'_, '_, D>, k: usize, status: Status, wha
         chunk.get::<D>(layout.velocity, k),
         piece.scratch.stress0_of(k),
     );
-    Error::new(status, text).at(Place {
-        body: Some(body),
-        particle: Some(particle),
-        ..Place::default()
-    })
+    let place = Place { body: Some(body), particle: Some(particle), ..Place::default() };
+    let occasion = Occasion { body, particle, step: piece.step, time: piece.time, dt };
+    let capsule = Capsule::of_point(piece.material, &piece.scratch, k, occasion);
+    Box::new(Failure { error: Error::new(status, text).at(place), capsule: Some(capsule) })
 }

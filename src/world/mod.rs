@@ -18,10 +18,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::boundary::Wall;
-use crate::context::Context;
+use crate::context::{Context, LogLevel};
 use crate::error::{Error, Place, Result, Status};
 use crate::grid::GridStats;
-use crate::material::Material;
+use crate::material::{Capsule, Material};
 use crate::particles::FieldInfo;
 use crate::particles::fields::NODE_FIELDS;
 use crate::particles::seeding::{Fill, Region};
@@ -33,6 +33,7 @@ use crate::step::particles_to_grid::particles_to_grid;
 use crate::step::retry::back_to_start;
 use crate::step::time_step::{Limits, limits_of_state};
 use crate::step::update_grid::update_grid;
+use crate::step::update_stress::Failure;
 
 use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
@@ -309,10 +310,11 @@ impl World {
                     return Ok(dt);
                 }
                 Ok(limits) => (limits.wanted_dt, None),
-                Err(error) if retries > 0 && error.status.is_of_material() => {
-                    (0.5 * dt, Some(error))
+                Err(failure) if retries > 0 && failure.error.status.is_of_material() => {
+                    (0.5 * dt, Some(failure))
                 }
-                Err(mut error) => {
+                Err(failure) => {
+                    let mut error = self.told(*failure);
                     self.poisoned = (error.status as i32) < 0;
                     if self.poisoned {
                         error.message += "; the world is poisoned";
@@ -322,6 +324,7 @@ impl World {
             };
             on!(&mut self, s => back_to_start(s));
             if left == 0 {
+                let why = why.map(|failure| self.told(*failure));
                 return Err(self.refused(dt, wanted, why));
             }
             left -= 1;
@@ -329,7 +332,7 @@ impl World {
         }
     }
 
-    fn attempt(&mut self, dt: f64) -> Result<Limits> {
+    fn attempt(&mut self, dt: f64) -> std::result::Result<Limits, Box<Failure>> {
         on!(&mut self, s => {
             let place = s.place();
             let result = if s.parallel {
@@ -338,11 +341,21 @@ impl World {
             } else {
                 step::step(&mut **s, dt)
             };
-            result.map_err(|mut error| {
-                (error.place.step, error.place.time) = (place.step, place.time);
-                error
+            result.map_err(|mut failure| {
+                let at = &mut failure.error.place;
+                (at.step, at.time) = (place.step, place.time);
+                failure
             })
         })
+    }
+
+    /// The error of a failure that counts; the call that failed is kept if the host asked for that.
+    fn told(&self, failure: Failure) -> Error {
+        let Failure { mut error, capsule } = failure;
+        if let Some(capsule) = capsule {
+            error.message.push_str(&keep(on!(&self, s => &s.context), capsule));
+        }
+        error
     }
 
     /// A step that was taken back, and will not be repeated.
@@ -533,6 +546,21 @@ impl<const D: usize> State<D> {
     fn wall_position(&self, id: i64) -> Result<usize> {
         let found = self.walls.iter().position(|w| w.id == id);
         found.ok_or_else(|| not_found("wall", id, self.walls.iter().map(|w| w.id)))
+    }
+}
+
+/// Writes the call at a point that failed where the host wants it, and says where; a file that can not be written is for the log.
+fn keep(context: &Context, mut capsule: Capsule) -> String {
+    let Some(folder) = context.capsule_folder() else { return String::new() };
+    if let Ok(model) = context.model(&capsule.model) {
+        capsule.plugin_version = context.plugin_of(model).map_or("", |p| p.version).into();
+    }
+    match capsule.write(&folder) {
+        Ok(path) => format!("; the call at this point is kept in {}", path.display()),
+        Err(error) => {
+            context.log(LogLevel::Error, &error.message);
+            String::new()
+        }
     }
 }
 

@@ -44,6 +44,8 @@ static void context_functions(void) {
   NULL_REFUSED(lahar_context_register_plugin, context, (NULL, lahar_plugin_entry_v1, &integer));
   EXPECT(lahar_context_register_plugin(context, NULL, &integer), LAHAR_ERROR_NULL_ARGUMENT, "`plugin` is NULL");
   NULL_ALLOWED(lahar_context_register_plugin, index, (context, lahar_plugin_entry_v1, NULL));
+  NULL_REFUSED(lahar_context_set_capsule_folder, context, (NULL, "."));
+  NULL_ALLOWED(lahar_context_set_capsule_folder, folder, (context, NULL));
   NULL_REFUSED(lahar_context_plugin_count, context, (NULL, &integer));
   NULL_REFUSED(lahar_context_plugin_count, plugins, (context, NULL));
   plugin.struct_size = sizeof plugin;

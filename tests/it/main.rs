@@ -6,6 +6,7 @@ mod setup;
 mod support;
 
 mod bad_input;
+mod capsules;
 mod checked;
 mod conditions;
 mod determinism;
