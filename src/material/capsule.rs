@@ -145,6 +145,8 @@ pub struct Capsule {
     pub plugin: String,
     /// Version of the plugin.
     pub plugin_version: String,
+    /// Its file; of a plugin that is linked into the host the id in brackets.
+    pub plugin_path: String,
     /// Id of the body.
     pub body: i64,
     /// Id of the particle inside its body.
@@ -234,7 +236,7 @@ pub struct Occasion {
 }
 
 impl Capsule {
-    /// The call at point `k` of a chunk, after it. The version of the plugin stays empty.
+    /// The call at point `k` of a chunk, after it. Version and path of the plugin stay empty.
     pub fn of_point(material: &Material, s: &Scratch<'_>, k: usize, occasion: Occasion) -> Self {
         let model = material.model();
         let parameters = model.parameters.iter().zip(&material.values);
@@ -250,6 +252,7 @@ impl Capsule {
             model: model.name.into(),
             plugin: model.plugin_id.into(),
             plugin_version: String::new(),
+            plugin_path: String::new(),
             body: occasion.body,
             particle: occasion.particle,
             step: occasion.step,

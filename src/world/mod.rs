@@ -552,8 +552,9 @@ impl<const D: usize> State<D> {
 /// Writes the call at a point that failed where the host wants it, and says where; a file that can not be written is for the log.
 fn keep(context: &Context, mut capsule: Capsule) -> String {
     let Some(folder) = context.capsule_folder() else { return String::new() };
-    if let Ok(model) = context.model(&capsule.model) {
-        capsule.plugin_version = context.plugin_of(model).map_or("", |p| p.version).into();
+    if let Some(plugin) = context.model(&capsule.model).ok().and_then(|m| context.plugin_of(m)) {
+        capsule.plugin_version = plugin.version.into();
+        capsule.plugin_path = plugin.path.display().to_string();
     }
     match capsule.write(&folder) {
         Ok(path) => format!("; the call at this point is kept in {}", path.display()),

@@ -75,6 +75,7 @@ fn a_point_that_fails_in_a_step_fails_again_alone_with_the_same_numbers() {
         assert_eq!((replay.end.status, &replay.end), (point, &capsule.end));
         assert_eq!(replay.plugin, [format!("org.lahar.test.{model}"), "1.0".into()]);
         assert_eq!([&capsule.plugin, &capsule.plugin_version], replay.plugin.each_ref());
+        assert_eq!(Path::new(&capsule.plugin_path), context.plugins()[0].path);
 
         // The numbers are those of the step: nothing of the point was at rest.
         assert_eq!((capsule.body, capsule.particle, capsule.step), (0, 7, 2));
