@@ -157,7 +157,8 @@ impl Ellipse {
             watch(angle, place.residual);
             let beyond = if wet { place.side < 0.0 } else { place.side > 0.0 };
             let newton = angle - place.residual / place.slope;
-            if !beyond && (newton - angle).abs() <= 1e-14 * angle {
+            let settled = !beyond && (newton - angle).abs() <= 1e-14 * angle;
+            if settled || high - low <= 1e-15 * angle {
                 return place;
             }
             if if beyond { wet } else { place.residual > 0.0 } {
