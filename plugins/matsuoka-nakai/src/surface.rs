@@ -28,10 +28,10 @@ impl Surface {
     pub(crate) fn new(friction: f64, cohesion: f64, dilation: f64) -> Self {
         let (sin, cos) = friction.to_radians().sin_cos();
         let sin_psi = dilation.to_radians().sin();
-        // I1 I2 / I3 = 9 + 8 tan² φ; in p, q and θ a cubic equation for p / q, whose largest root is a cosine. [MTN-1]
+        // I1 I2 / I3 = 9 + 8 tan² φ; in p, q and θ a cubic equation for p / q, whose largest root is a cosine.
         let eight_tan2 = 8.0 * (sin / cos).powi(2);
         let beta = (9.0 + eight_tan2) * eight_tan2.sqrt() / (6.0 + eight_tan2).powf(1.5);
-        let beta = beta.min(1.0);
+        let beta = beta.min(1.0); // [MTN-1]
         Self {
             slope: 6.0 * sin / (3.0 - sin),
             strength: 6.0 * cohesion * cos / (3.0 - sin),
