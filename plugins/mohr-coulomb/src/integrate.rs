@@ -1,7 +1,7 @@
 //! One step in principal axes: elastic trial, return, and the implicit softening of the strength.
 
 use crate::planes::{self, Elasticity, Returned, closest, dot};
-use crate::strength::{Law, Softening, Strength};
+use crate::strength::{Law, Softening};
 use lahar_plugin::root::bracketed;
 
 /// How far outside, relative to the stresses, still counts as inside: a stress that was returned to a plane stays there when
@@ -43,7 +43,7 @@ impl Material {
             return Step { stress: trial, kappa, opened, tangent, converged: true, unique: true };
         }
         if self.law.softening == Softening::None {
-            let returned = closest(&self.elasticity, &strength, trial);
+            let returned = closest(&self.elasticity, &strength, trial, None);
             let tangent = with_tangent.then(|| {
                 self.tangent(|strain| {
                     let trial = self.elasticity.stress(strain);
@@ -77,9 +77,11 @@ impl Material {
         let most = equivalent(trial.map(|s| (s - mean) / self.elasticity.two_g));
         let tolerance = 1e-13 * most + 1e-16 * kappa0;
         let bracket = [kappa0, kappa0 + most * (1.0 + 1e-9)];
-        let mut unique = true;
+        let (mut unique, mut last) = (true, None);
         let root = bracketed(bracket, kappa0, tolerance, |kappa| {
-            let (returned, [strength, slope]) = self.at(trial, kappa);
+            let [strength, slope] = self.law.at(kappa);
+            let returned = closest(&self.elasticity, &strength, trial, last.as_ref());
+            last = Some(returned);
             let residual = kappa - kappa0 - equivalent(returned.plastic); // [MHC-5]
             watch(residual);
             let by_kappa = returned.change(&self.elasticity, &strength, [0.0; 3], Some(&slope));
@@ -87,7 +89,8 @@ impl Material {
             unique &= slope > 0.0;
             [residual, slope]
         });
-        let (returned, [strength, slope]) = self.at(trial, root.at);
+        let [strength, slope] = self.law.at(root.at);
+        let returned = closest(&self.elasticity, &strength, trial, last.as_ref());
         let tangent = with_tangent.then(|| {
             let by_kappa = returned.change(&self.elasticity, &strength, [0.0; 3], Some(&slope));
             self.tangent(|strain| {
@@ -105,11 +108,6 @@ impl Material {
             converged: root.converged,
             unique,
         }
-    }
-
-    fn at(&self, trial: [f64; 3], kappa: f64) -> (Returned, [Strength; 2]) {
-        let [strength, slope] = self.law.at(kappa);
-        (closest(&self.elasticity, &strength, trial), [strength, slope])
     }
 
     /// Derivative of the principal stresses from the plastic strain of each unit strain.

@@ -59,8 +59,6 @@ pub struct MohrCoulomb {
 /// Stresses beyond this have no squares [Pa].
 const LARGEST_STRESS: f64 = 1e150;
 
-const ANGLE_TEXT: &CStr = c"Friction angle at the peak";
-
 impl Model for MohrCoulomb {
     const NAME: &'static CStr = c"mohr_coulomb";
     const SUMMARY: &'static CStr =
@@ -77,7 +75,7 @@ impl Model for MohrCoulomb {
             .typical(0.3)
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
-        Parameter::real(c"friction_angle", c"phi", c"deg", ANGLE_TEXT)
+        Parameter::real(c"friction_angle", c"phi", c"deg", c"Friction angle at the peak")
             .typical(30.0)
             .hard(0.0, 89.0)
             .advised(0.0, 55.0),

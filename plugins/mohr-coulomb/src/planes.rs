@@ -107,12 +107,18 @@ pub(crate) struct Returned {
     inverse: [[f64; 3]; 3],
 }
 
-/// The return of sorted elastic trial stresses that are outside.
-pub(crate) fn closest(elasticity: &Elasticity, strength: &Strength, trial: [f64; 3]) -> Returned {
+/// The return of sorted elastic trial stresses that are outside. The set of `last`, a return from the same stresses with another
+/// strength, is tried first.
+pub(crate) fn closest(
+    elasticity: &Elasticity,
+    strength: &Strength,
+    trial: [f64; 3],
+    last: Option<&Returned>,
+) -> Returned {
     let round_off = 1e-13 * scale(strength, trial);
     let mut best = None;
     let mut least = f64::INFINITY;
-    for set in SETS {
+    for set in last.map(|last| last.set).into_iter().chain(SETS) {
         let Some(returned) = onto(elasticity, strength, trial, set) else { continue };
         let negative = returned.multipliers.iter().fold(0.0_f64, |worst, l| worst.max(-l));
         let violation = PLANES.iter().fold(elasticity.two_g * negative, |worst, plane| {
@@ -234,8 +240,8 @@ fn apply(m: [[f64; 3]; 3], x: [f64; 3]) -> [f64; 3] {
 /// The inverse, if there is one.
 fn invert([a, b, c]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let columns = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant = dot(a, columns[0]);
+    let factor = 1.0 / dot(a, columns[0]);
     let inverse: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] / determinant));
+        std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] * factor));
     inverse.iter().flatten().all(|x| x.is_finite()).then_some(inverse)
 }
