@@ -54,7 +54,7 @@ fn every_unsafe_block_says_why_it_is_sound() {
 fn no_file_is_longer_than_the_bound() {
     let long: Vec<_> = files(&["rs", "c", "cpp", "f90"])
         .into_iter()
-        .filter(|path| path != "include/lahar/lahar.f90") // most of it is generated
+        .filter(|path| !path.starts_with("include/lahar/")) // much of it is generated
         .map(|path| (read(&path).lines().count(), path))
         .filter(|(lines, _)| *lines > MAX_LINES)
         .collect();

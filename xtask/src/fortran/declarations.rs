@@ -1,4 +1,4 @@
-//! A reader of `lahar.h`. It knows the regular C that cbindgen writes and refuses everything else.
+//! A reader of `lahar.h` and `lahar_plugin.h`. It knows the regular C that cbindgen writes and refuses everything else.
 
 /// What the header declares, in its order.
 #[derive(Debug, Default)]
@@ -48,6 +48,9 @@ pub struct Variable {
     pub length: Option<usize>,
 }
 
+/// Base of a pointer to a function that is a field of a struct.
+pub const FUNCTION_POINTER: &str = "(*)";
+
 /// A base type with its pointers: `const char *const *` is a constant `char` with depth 2.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Type {
@@ -87,7 +90,8 @@ impl Header {
     }
 
     fn declaration(&mut self, text: &str) -> Result<(), String> {
-        if text.starts_with("LAHAR_ASSERT_LAYOUT") {
+        // What a plugin exports is written by its author.
+        if text.starts_with("LAHAR_ASSERT_LAYOUT") || text.starts_with("LAHAR_PLUGIN_EXPORT") {
             return Ok(());
         }
         let Some(text) = text.strip_prefix("typedef ") else {
@@ -168,7 +172,15 @@ fn declarations(text: &str) -> Vec<String> {
 fn structure(name: &str, body: &str) -> Result<Struct, String> {
     let (fields, _) = body.rsplit_once('}').ok_or_else(|| format!("struct {name} has no end"))?;
     let fields = fields.split(';').map(str::trim).filter(|field| !field.is_empty());
-    Ok(Struct { name: name.to_string(), fields: fields.map(variable).collect::<Result<_, _>>()? })
+    Ok(Struct { name: name.to_string(), fields: fields.map(field).collect::<Result<_, _>>()? })
+}
+
+/// A variable, or `int32_t (*update)(const void *instance)`.
+fn field(text: &str) -> Result<Variable, String> {
+    let pointer = text.split_once("(*").and_then(|(_, rest)| rest.split_once(")("));
+    let Some((name, _)) = pointer else { return variable(text) };
+    let kind = Type { base: FUNCTION_POINTER.to_string(), constant: false, depth: 0 };
+    Ok(Variable { name: name.trim().to_string(), kind, length: None })
 }
 
 fn function(text: &str) -> Result<Function, String> {
@@ -226,7 +238,8 @@ mod tests {
         #endif // __cplusplus
         typedef int32_t lahar_status;
         typedef struct lahar_world lahar_world;
-        typedef struct lahar_fill { uint32_t struct_size; double stress[6]; const double *data; } lahar_fill;
+        typedef struct lahar_fill { uint32_t struct_size; double stress[6]; const double *data;
+            void (*log)(int32_t level, const char *message); } lahar_fill;
         typedef void (*lahar_log_callback)(int32_t level, const char *message, void *user);
         lahar_status lahar_add(struct lahar_world *world, const double (*min)[3],
                                const char *const *names, lahar_world **out);
@@ -234,6 +247,7 @@ mod tests {
         #ifdef __cplusplus
         }
         #endif
+        LAHAR_PLUGIN_EXPORT const lahar_fill *lahar_entry(const lahar_world *world);
         LAHAR_ASSERT_LAYOUT(sizeof(lahar_fill) == 8);
         #endif";
 
@@ -245,6 +259,8 @@ mod tests {
         assert_eq!(header.callbacks, ["lahar_log_callback"]);
         assert_eq!(header.resolve("lahar_status"), "int32_t");
         assert_eq!(header.structs[0].fields[1].length, Some(6));
+        let log = &header.structs[0].fields[3];
+        assert_eq!((log.name.as_str(), log.kind.base.as_str()), ("log", FUNCTION_POINTER));
         let [add, name] = &header.functions[..] else { panic!("{:?}", header.functions) };
         assert_eq!((add.arguments.len(), name.arguments.len()), (4, 1));
         assert_eq!((add.arguments[1].name.as_str(), add.arguments[1].length), ("min", Some(3)));

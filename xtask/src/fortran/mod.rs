@@ -1,6 +1,6 @@
-//! The `bind(c)` layer of `lahar.f90`, made from `lahar.h`.
+//! The `bind(c)` layers of `lahar.f90` and `lahar_plugin.f90`, made from `lahar.h` and `lahar_plugin.h`.
 //!
-//! The section between two marker lines of the module is replaced; what stands around it is written by hand.
+//! The section between two marker lines of a module is replaced; what stands around it is written by hand.
 
 mod declarations;
 mod module;
@@ -8,31 +8,39 @@ mod module;
 use crate::process;
 use declarations::Header;
 
-const HEADER: &str = "include/lahar/lahar.h";
-const MODULE: &str = "include/lahar/lahar.f90";
+/// Headers, and the modules that are made from them.
+const MODULES: [(&str, &str); 2] = [
+    ("include/lahar/lahar.h", "include/lahar/lahar.f90"),
+    ("include/lahar/lahar_plugin.h", "include/lahar/lahar_plugin.f90"),
+];
 const BEGIN: &str = "  ! ---- begin of the part that `cargo xtask headers` writes ----\n";
 const END: &str = "  ! ---- end of the part that `cargo xtask headers` writes ----\n";
 
-/// Writes the generated section, or only compares it.
+/// Writes the generated sections, or only compares them.
 pub fn run(check: bool) -> Result<(), String> {
     let root = process::root();
     let read =
         |file: &str| std::fs::read_to_string(root.join(file)).map_err(|e| format!("{file}: {e}"));
-    let header = Header::parse(&read(HEADER)?).map_err(|e| format!("{HEADER}: {e}"))?;
-    let before = read(MODULE)?;
-    let after = replaced(&before, &module::section(&header)?)?;
-    if before == after {
-        return Ok(());
+    for (header_file, module_file) in MODULES {
+        let header =
+            Header::parse(&read(header_file)?).map_err(|e| format!("{header_file}: {e}"))?;
+        let before = read(module_file)?;
+        let after = replaced(&before, &module::section(&header)?)
+            .ok_or_else(|| format!("{module_file} has lost its marker lines"))?;
+        if before == after {
+            continue;
+        }
+        if check {
+            return Err(format!(
+                "{module_file} does not fit {header_file}; run `cargo xtask headers`"
+            ));
+        }
+        std::fs::write(root.join(module_file), after).map_err(|e| format!("{module_file}: {e}"))?;
     }
-    if check {
-        return Err(format!("{MODULE} does not fit {HEADER}; run `cargo xtask headers`"));
-    }
-    std::fs::write(root.join(MODULE), after).map_err(|e| format!("{MODULE}: {e}"))
+    Ok(())
 }
 
-fn replaced(text: &str, section: &str) -> Result<String, String> {
-    let (Some(begin), Some(end)) = (text.find(BEGIN), text.find(END)) else {
-        return Err(format!("{MODULE} has lost its marker lines"));
-    };
-    Ok(format!("{}{section}{}", &text[..begin + BEGIN.len()], &text[end..]))
+fn replaced(text: &str, section: &str) -> Option<String> {
+    let (begin, end) = (text.find(BEGIN)?, text.find(END)?);
+    Some(format!("{}{section}{}", &text[..begin + BEGIN.len()], &text[end..]))
 }

@@ -1,4 +1,4 @@
-//! Fortran text for the declarations of the header.
+//! Fortran text for the declarations of a header.
 //!
 //! | C | Fortran |
 //! |---|---|
@@ -11,24 +11,29 @@
 //! | pointer to a handle | `type(c_ptr), intent(out)` |
 //! | pointer to a function | `type(c_funptr), value` |
 
-use super::declarations::{Function, Header, Struct, Type, Variable};
+use super::declarations::{FUNCTION_POINTER, Function, Header, Struct, Type, Variable};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Constants that stand for an id; all others are codes.
-const INDEX_CONSTANTS: [&str; 1] = ["LAHAR_ALL_BODIES"];
+/// Beginnings of the names of constants that are ids or bits of 64; all others are codes.
+const LONG_CONSTANTS: [&str; 3] = ["LAHAR_ALL_BODIES", "LAHAR_OUTPUT_", "LAHAR_CAPABILITY_"];
 
 /// The generated section: constants, types, interfaces.
 pub fn section(header: &Header) -> Result<String, String> {
     let mut text = String::new();
     for (name, value) in &header.constants {
-        let kind = if INDEX_CONSTANTS.contains(&name.as_str()) { "c_int64_t" } else { "c_int32_t" };
+        let is_long = LONG_CONSTANTS.iter().any(|start| name.starts_with(start));
+        let kind = if is_long { "c_int64_t" } else { "c_int32_t" };
         let _ = writeln!(text, "  integer({kind}), parameter, public :: {name} = {value}_{kind}");
     }
     for structure in &header.structs {
         text.push_str(&derived_type(header, structure)?);
     }
-    text.push_str("\n  interface\n");
+    text.push('\n');
+    if header.functions.is_empty() {
+        return Ok(text);
+    }
+    text.push_str("  interface\n");
     for function in &header.functions {
         text.push_str(&interface(header, function)?);
     }
@@ -57,6 +62,7 @@ fn initial(header: &Header, field: &Variable) -> &'static str {
     match (field.kind.depth, header.resolve(&field.kind.base)) {
         (1.., _) => " = c_null_ptr",
         (0, "double") => " = 0.0_c_double",
+        (0, FUNCTION_POINTER) => " = c_null_funptr",
         (0, base) if integer_kind(base).is_some() => " = 0",
         _ => "", // a struct has its own
     }
@@ -111,6 +117,7 @@ fn value_type(header: &Header, variable: &Variable) -> Result<String, String> {
     let text = match (variable.kind.depth, base) {
         (1.., _) => "type(c_ptr)".to_string(),
         (0, "double") => "real(c_double)".to_string(),
+        (0, FUNCTION_POINTER) => "type(c_funptr)".to_string(),
         (0, base) if header.callbacks.iter().any(|name| name == base) => "type(c_funptr)".into(),
         (0, base) if header.structs.iter().any(|s| s.name == base) => format!("type({base})"),
         (0, base) => {
