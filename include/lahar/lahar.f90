@@ -1256,6 +1256,18 @@ module lahar
   public :: lahar_world_write_vtp
   ! ---- end of the part that `cargo xtask headers` writes ----
 
+  abstract interface
+    !> The entry of a plugin, lahar_plugin_entry_v1.
+    function lahar_entry_function(host) bind(c) result(plugin)
+      import :: c_ptr
+      implicit none
+      type(c_ptr), value :: host
+      type(c_ptr) :: plugin
+    end function lahar_entry_function
+  end interface
+
+  public :: lahar_entry_function
+
   !> Threads, log and loaded plugins.
   type, public :: lahar_context
     private
@@ -1269,6 +1281,7 @@ module lahar
     procedure :: log_to_stderr => context_log_to_stderr
     procedure :: load_plugin => context_load_plugin
     procedure :: set_capsule_folder => context_set_capsule_folder
+    procedure :: register_plugin => context_register_plugin
   end type lahar_context
 
   !> A constitutive model with its parameters.
@@ -1424,6 +1437,19 @@ contains
     character(*), intent(inout), optional :: errmsg
     call finish(lahar_context_set_capsule_folder(self%handle, to_c(folder)), stat, errmsg)
   end subroutine context_set_capsule_folder
+
+  !> Takes a plugin that is linked into the program by its entry, lahar_plugin_entry_v1.
+  subroutine context_register_plugin(self, entry, index, stat, errmsg)
+    class(lahar_context), intent(in) :: self
+    procedure(lahar_entry_function) :: entry
+    integer(c_int64_t), intent(out), optional :: index
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    integer(c_int64_t) :: found(1)
+    found = -1
+    call finish(lahar_context_register_plugin(self%handle, c_funloc(entry), found), stat, errmsg)
+    if (present(index)) index = found(1)
+  end subroutine context_register_plugin
 
   ! ---- material
 
