@@ -26,5 +26,6 @@ mod readme;
 mod register;
 mod retry;
 mod sparse_grid;
+mod templates;
 mod tidy;
 mod vtp;
