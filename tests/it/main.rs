@@ -21,6 +21,7 @@ mod loading;
 mod objectivity;
 mod order;
 mod plugin_tool;
+mod own_material;
 mod plugins;
 mod readme;
 mod register;
