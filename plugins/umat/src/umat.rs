@@ -1,0 +1,520 @@
+//! Calls a UMAT, point by point.
+//!
+//! A UMAT may write into its inputs, so every argument is set before every call. The order of components is 11, 22, 33, 12, 13, 23, strains
+//! have engineering shears, tensors of two places are stored by columns.
+
+use crate::calls::{Call, Instance, Points, store};
+use crate::describe::{
+    Adapted, DENSITY, ELEMENT_LENGTH, ORDER, PARTICLE_ID, POSITION, TEMPERATURE,
+};
+use crate::fpenv;
+use crate::host::log;
+use crate::kinematics::{
+    IDENTITY, LANES, Lane, deformed, lane, lanes, rotated, step_rotations, strain_increment,
+    transposed,
+};
+use crate::library::Functions;
+use crate::modulus::wave_modulus;
+use crate::sidecar::HiddenLength;
+use lahar_plugin_abi::*;
+use std::cell::RefCell;
+use std::ffi::{c_char, c_int, c_void};
+
+macro_rules! umat_type {
+    ($($length:ty)?) => {
+        unsafe extern "C" fn(
+            *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64,
+            *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut f64, *mut c_char,
+            *mut i32, *mut i32, *mut i32, *mut i32, *mut f64, *mut i32, *mut f64, *mut f64, *mut f64, *mut f64,
+            *mut f64, *mut f64, *mut i32, *mut i32, *mut i32, *mut i32, *mut i32, *mut i32 $(, $length)?
+        )
+    };
+}
+
+/// STATEV(NSTATV + 1) and what follows: a routine that writes there was built for more state variables.
+const BEHIND: usize = 8;
+const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
+
+/// DTIME where no step is known yet, as in `wave_speed`.
+const SOME_STEP: f64 = 1e-6;
+
+/// The arguments of a call.
+#[repr(C)]
+struct Arguments {
+    routine: *const c_void,
+    hidden_length: HiddenLength,
+    stress: [f64; 6],
+    ddsdde: [f64; 36],
+    energies: [f64; 3],
+    rpl: f64,
+    ddsddt: [f64; 6],
+    drplde: [f64; 6],
+    drpldt: f64,
+    stran: [f64; 6],
+    dstran: [f64; 6],
+    time: [f64; 2],
+    dtime: f64,
+    temp: f64,
+    dtemp: f64,
+    predef: [f64; 8],
+    dpred: [f64; 8],
+    cmname: [u8; 80],
+    ndi: i32,
+    nshr: i32,
+    ntens: i32,
+    nstatv: i32,
+    nprops: i32,
+    coords: [f64; 3],
+    drot: [f64; 9],
+    pnewdt: f64,
+    celent: f64,
+    dfgrd0: [f64; 9],
+    dfgrd1: [f64; 9],
+    noel: i32,
+    npt: i32,
+    layer: i32,
+    kspt: i32,
+    kstep: [i32; 4],
+    kinc: i32,
+    statev: Vec<f64>,
+    props: Vec<f64>,
+}
+
+// SAFETY: the address of a routine, which is called on the thread that has set it only.
+unsafe impl Send for Arguments {}
+
+thread_local! {
+    static ARGUMENTS: RefCell<Arguments> = const { RefCell::new(Arguments::NEW) };
+}
+
+/// Calls the routine with the arguments at `data`.
+///
+/// # Safety
+///
+/// `data` points to `Arguments` whose routine is a UMAT with the hidden length that they say. No destructor may stand in here: XIT of the
+/// utility routines jumps out of the routine over this function.
+unsafe extern "C" fn call(data: *mut c_void) {
+    // SAFETY: told by the caller.
+    let a = unsafe { &mut *data.cast::<Arguments>() };
+    let [sse, spd, scd] = &mut a.energies;
+    macro_rules! call {
+        ($kind:ty $(, $length:expr)?) => {{
+            // SAFETY: the caller says that the routine is a UMAT; the pointers are to places as long as it expects.
+            unsafe {
+                let routine: $kind = std::mem::transmute(a.routine);
+                routine(
+                    a.stress.as_mut_ptr(), a.statev.as_mut_ptr(), a.ddsdde.as_mut_ptr(), sse, spd, scd, &mut a.rpl,
+                    a.ddsddt.as_mut_ptr(), a.drplde.as_mut_ptr(), &mut a.drpldt, a.stran.as_mut_ptr(),
+                    a.dstran.as_mut_ptr(), a.time.as_mut_ptr(), &mut a.dtime, &mut a.temp, &mut a.dtemp,
+                    a.predef.as_mut_ptr(), a.dpred.as_mut_ptr(), a.cmname.as_mut_ptr().cast(), &mut a.ndi, &mut a.nshr,
+                    &mut a.ntens, &mut a.nstatv, a.props.as_mut_ptr(), &mut a.nprops, a.coords.as_mut_ptr(),
+                    a.drot.as_mut_ptr(), &mut a.pnewdt, &mut a.celent, a.dfgrd0.as_mut_ptr(), a.dfgrd1.as_mut_ptr(),
+                    &mut a.noel, &mut a.npt, &mut a.layer, &mut a.kspt, a.kstep.as_mut_ptr(), &mut a.kinc $(, $length)?
+                )
+            }
+        }};
+    }
+    match a.hidden_length {
+        HiddenLength::SizeT => call!(umat_type!(usize), 80),
+        HiddenLength::Int => call!(umat_type!(c_int), 80),
+        HiddenLength::None => call!(umat_type!()),
+    }
+}
+
+/// What eight points have in common on the way in.
+struct Start {
+    stress: [Lane; 6],
+    strain: [Lane; 6],
+    increment: [Lane; 6],
+    rotation: [Lane; 9],
+    old: [Lane; 9],
+    new: [Lane; 9],
+}
+
+/// What became of a point.
+enum Outcome {
+    Done { modulus: f64 },
+    Failed,
+    Left,
+}
+
+/// Runs `update`, or `wave_speed`: a step without strain of which only the tangent counts.
+pub fn run(instance: &Instance, p: &mut Points<'_>, call: Call) -> Result<(), String> {
+    let functions = instance.adapted.library.functions()?;
+    if instance.adapted.ntens == 4 && call == Call::Update {
+        in_plane(p)?;
+    }
+    ARGUMENTS.with_borrow_mut(|a| {
+        a.begin(instance, &functions, p);
+        let mut left = None;
+        for k in (0..p.n).step_by(LANES) {
+            let start = start(instance.adapted, p, call, k);
+            left = left.or(eight(instance, &functions, a, p, (call, k), &start)?);
+        }
+        if let Some(id) = left {
+            log(
+                LAHAR_PLUGIN_LOG_WARNING,
+                &format!("the UMAT ended its call with XIT at particle {id}, time {}", p.time),
+            );
+        }
+        Ok(())
+    })
+}
+
+/// NTENS = 4 leaves no room for shears out of the plane.
+pub fn in_plane(p: &Points<'_>) -> Result<(), String> {
+    let out = [2, 5, 6, 7].iter().flat_map(|c| &p.gradient[c * p.stride..][..p.n]);
+    if out.into_iter().any(|x| *x != 0.0) {
+        return Err("the sidecar says `ntens` 4, which is for plane strain, but the points shear out of the plane; set `ntens` to 6 for \
+                    three dimensions"
+            .into());
+    }
+    Ok(())
+}
+
+/// Kinematics of the points from `k` on: the start stress turned with the material, as Abaqus does before it calls.
+#[inline(always)]
+fn start(adapted: &Adapted, p: &Points<'_>, call: Call, k: usize) -> Start {
+    let stress = p.load_all(p.stress0, 0, k);
+    let strain = p.load_all(p.state0, adapted.total_strain, k);
+    let h: [Lane; 9] = p.load_all(p.state0, adapted.displacement_gradient, k);
+    let old = lanes(|k| std::array::from_fn(|c| h[c][k] + IDENTITY[c]));
+    if call == Call::WaveSpeed {
+        let rotation = IDENTITY.map(|x| [x; LANES]);
+        let increment = [[0.0; LANES]; 6];
+        return Start { stress, strain, increment, rotation, old, new: old };
+    }
+    let l: [Lane; 9] = p.load_all(p.gradient, 0, k);
+    let rotation = step_rotations(&l, p.dt);
+    Start {
+        stress: lanes(|k| rotated(lane(&rotation, k), lane(&stress, k))),
+        strain,
+        increment: lanes(|k| strain_increment(lane(&l, k), p.dt)),
+        rotation,
+        new: lanes(|k| deformed(lane(&old, k), lane(&l, k), p.dt)),
+        old,
+    }
+}
+
+/// Calls the routine for the points from `k` on and writes what they gave; the id of the first that ended by XIT.
+fn eight(
+    instance: &Instance,
+    functions: &Functions,
+    a: &mut Arguments,
+    p: &mut Points<'_>,
+    (call, k): (Call, usize),
+    start: &Start,
+) -> Result<Option<f64>, String> {
+    let adapted = instance.adapted;
+    let (shape, update) = ((p.n, p.stride), call == Call::Update);
+    let mut left = None;
+    let mut stress = start.stress;
+    for i in 0..LANES.min(p.n - k) {
+        a.set(instance, p, start, (k, i));
+        let outcome = a.call(instance, functions)?;
+        let density = p.inputs[DENSITY][k + i];
+        let mut speed = 0.0;
+        if let Outcome::Done { modulus } = outcome {
+            speed = (modulus / density).sqrt();
+        } else if let Outcome::Left = outcome {
+            left = left.or(Some(p.inputs[PARTICLE_ID][k + i]));
+        }
+        p.wave_speed[k + i] = speed;
+        if update {
+            let done = matches!(outcome, Outcome::Done { .. });
+            a.keep_state(adapted, p, k + i, done);
+            for c in 0..adapted.ntens {
+                stress[ORDER[c]][i] = a.stress[c];
+            }
+            a.judge(p, k + i, done);
+        }
+    }
+    if update {
+        for c in 0..6 {
+            store(p.stress1, shape, c, k, &stress[c]);
+            let strain = std::array::from_fn(|i| start.strain[c][i] + start.increment[c][i]);
+            store(p.state1, shape, adapted.total_strain + c, k, &strain);
+        }
+        for c in 0..9 {
+            let h = std::array::from_fn(|i| start.new[c][i] - IDENTITY[c]);
+            store(p.state1, shape, adapted.displacement_gradient + c, k, &h);
+        }
+    }
+    Ok(left)
+}
+
+impl Arguments {
+    const NEW: Self = Self {
+        routine: std::ptr::null(),
+        hidden_length: HiddenLength::SizeT,
+        stress: [0.0; 6],
+        ddsdde: [0.0; 36],
+        energies: [0.0; 3],
+        rpl: 0.0,
+        ddsddt: [0.0; 6],
+        drplde: [0.0; 6],
+        drpldt: 0.0,
+        stran: [0.0; 6],
+        dstran: [0.0; 6],
+        time: [0.0; 2],
+        dtime: 0.0,
+        temp: 0.0,
+        dtemp: 0.0,
+        predef: [0.0; 8],
+        dpred: [0.0; 8],
+        cmname: [b' '; 80],
+        ndi: 3,
+        nshr: 3,
+        ntens: 6,
+        nstatv: 0,
+        nprops: 0,
+        coords: [0.0; 3],
+        drot: [0.0; 9],
+        pnewdt: 0.0,
+        celent: 0.0,
+        dfgrd0: [0.0; 9],
+        dfgrd1: [0.0; 9],
+        noel: 1,
+        npt: 1,
+        layer: 1,
+        kspt: 1,
+        kstep: [1, 0, 1, 0],
+        kinc: 1,
+        statev: Vec::new(),
+        props: Vec::new(),
+    };
+
+    /// Room for this material.
+    fn begin(&mut self, instance: &Instance, functions: &Functions, _: &Points<'_>) {
+        self.routine = functions.routine;
+        self.hidden_length = instance.adapted.hidden_length;
+        self.statev.clear();
+        self.statev.resize(instance.adapted.states.len() + BEHIND, UNTOUCHED);
+        self.props.clone_from(&instance.props);
+        self.props.resize(instance.props.len().max(1), 0.0);
+    }
+
+    /// Sets every argument for point `k + i`, lane i of `start`.
+    #[inline(always)]
+    fn set(&mut self, instance: &Instance, p: &Points<'_>, start: &Start, (k, i): (usize, usize)) {
+        let (adapted, at) = (instance.adapted, k + i);
+        for c in 0..6 {
+            let (from, factor) = (ORDER[c], if c < 3 { 1.0 } else { 2.0 });
+            self.stress[c] = start.stress[from][i];
+            self.stran[c] = factor * start.strain[from][i];
+            self.dstran[c] = factor * start.increment[from][i];
+        }
+        self.drot = transposed(lane(&start.rotation, i));
+        self.dfgrd0 = transposed(lane(&start.old, i));
+        self.dfgrd1 = transposed(lane(&start.new, i));
+        self.ddsdde = [0.0; 36];
+        (self.ddsddt, self.drplde) = ([0.0; 6], [0.0; 6]);
+        (self.rpl, self.drpldt) = (0.0, 0.0);
+        self.time = [p.time; 2];
+        self.dtime = if p.dt > 0.0 { p.dt } else { SOME_STEP };
+        (self.temp, self.dtemp) = (p.inputs[TEMPERATURE][at], 0.0);
+        (self.predef, self.dpred) = ([0.0; 8], [0.0; 8]);
+        for (to, from) in self.predef.iter_mut().zip(&adapted.predef) {
+            *to = p.inputs[*from][at];
+        }
+        self.cmname = adapted.cmname;
+        let ntens = adapted.ntens as i32;
+        (self.ndi, self.nshr, self.ntens) = (3, ntens - 3, ntens);
+        (self.nstatv, self.nprops) = (adapted.states.len() as i32, instance.props.len() as i32);
+        self.props[..instance.props.len()].copy_from_slice(&instance.props);
+        for axis in 0..3 {
+            self.coords[axis] = p.inputs[POSITION + axis][at];
+        }
+        (self.pnewdt, self.celent) = (1e36, p.inputs[ELEMENT_LENGTH][at]);
+        self.noel = p.inputs[PARTICLE_ID][at] as i32 + 1;
+        (self.npt, self.layer, self.kspt) = (1, 1, 1);
+        self.kstep = [1, 0, 1, 0]; // of NLGEOM
+        self.kinc = i32::try_from(p.step.max(0).saturating_add(1)).unwrap_or(i32::MAX);
+        for (to, place) in self.statev.iter_mut().zip(&adapted.states) {
+            *to = place.factor * p.state0[place.component * p.stride + at];
+        }
+        self.energies = match adapted.energies {
+            None => [0.0; 3],
+            Some(first) => std::array::from_fn(|e| p.state0[(first + e) * p.stride + at]),
+        };
+    }
+
+    /// Calls the routine and looks at what it gave.
+    #[inline(always)]
+    fn call(&mut self, instance: &Instance, functions: &Functions) -> Result<Outcome, String> {
+        let control = fpenv::control();
+        let data = std::ptr::from_mut(self).cast();
+        // SAFETY: the arguments are set for this routine. The guard of the utility routines calls `call(data)`, or jumps out of it.
+        let left = unsafe {
+            match functions.guard {
+                Some(guard) => guard(call, data),
+                None => {
+                    call(data);
+                    0
+                }
+            }
+        };
+        fpenv::set_back(control);
+        let ntens = instance.adapted.ntens;
+        let behind = &self.statev[instance.adapted.states.len()..];
+        if behind.iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
+            return Err(self.wrote_behind(instance));
+        }
+        if left != 0 {
+            return Ok(Outcome::Left);
+        }
+        let modulus = wave_modulus(ntens, |i, j| self.ddsdde[i + ntens * j]);
+        let sum: f64 = self.stress[..ntens].iter().map(|x| 0.0 * x).sum();
+        let states: f64 = self.statev[..self.statev.len() - BEHIND].iter().map(|x| 0.0 * x).sum();
+        if sum + states + 0.0 * modulus != 0.0 || !(self.pnewdt > 0.0) {
+            return Ok(Outcome::Failed);
+        }
+        let modulus = modulus.max(instance.floor);
+        if !(modulus > 0.0) {
+            return Err(no_tangent());
+        }
+        Ok(Outcome::Done { modulus })
+    }
+
+    #[cold]
+    fn wrote_behind(&mut self, instance: &Instance) -> String {
+        let nstatv = instance.adapted.states.len();
+        self.statev[nstatv..].fill(UNTOUCHED);
+        format!(
+            "the UMAT wrote behind STATEV({nstatv}), the last of its state variables; tell with `states` in the sidecar {} how many it \
+             has",
+            instance.adapted.library.path().with_extension("json").display()
+        )
+    }
+
+    /// Writes the state at the end, or that of the start if the point failed.
+    #[inline(always)]
+    fn keep_state(&mut self, adapted: &Adapted, p: &mut Points<'_>, at: usize, done: bool) {
+        for (value, place) in self.statev.iter().zip(&adapted.states) {
+            let to = place.component * p.stride + at;
+            p.state1[to] = if done { value / place.factor } else { p.state0[to] };
+        }
+        for c in &adapted.unused {
+            p.state1[c * p.stride + at] = p.state0[c * p.stride + at];
+        }
+        if let Some(first) = adapted.energies {
+            for e in 0..3 {
+                let to = (first + e) * p.stride + at;
+                p.state1[to] = if done { self.energies[e] } else { p.state0[to] };
+            }
+            if let Some(energy) = p.energy.get_mut(at) {
+                *energy = self.energies[0];
+            }
+        }
+    }
+
+    /// Writes status and wanted step.
+    #[inline(always)]
+    fn judge(&self, p: &mut Points<'_>, at: usize, done: bool) {
+        let smaller = done && self.pnewdt < 1.0;
+        if let Some(factor) = p.dt_factor.get_mut(at) {
+            *factor = if smaller { self.pnewdt } else { 1.0 };
+        }
+        if let Some(status) = p.status.get_mut(at) {
+            *status = match (done, smaller) {
+                (false, _) => LAHAR_POINT_FAILED,
+                (true, true) => LAHAR_POINT_SMALLER_STEP,
+                (true, false) => LAHAR_POINT_OK,
+            };
+        }
+    }
+}
+
+#[cold]
+fn no_tangent() -> String {
+    "the UMAT left DDSDDE zero, from which the speed of waves comes; give `modulus`, a number [Pa] or the key of a parameter, in the \
+     sidecar"
+        .into()
+}
+
+type Sdvini = unsafe extern "C" fn(
+    *mut f64,
+    *mut f64,
+    *mut i32,
+    *mut i32,
+    *mut i32,
+    *mut i32,
+    *mut i32,
+    *mut i32,
+);
+
+struct FirstState {
+    routine: *const c_void,
+    statev: Vec<f64>,
+    coords: [f64; 3],
+    numbers: [i32; 6],
+}
+
+/// # Safety
+///
+/// As for [`call`], with a `FirstState` whose routine is an SDVINI.
+unsafe extern "C" fn call_sdvini(data: *mut c_void) {
+    // SAFETY: told by the caller.
+    let a = unsafe { &mut *data.cast::<FirstState>() };
+    let [nstatv, ncrds, noel, npt, layer, kspt] = &mut a.numbers;
+    // SAFETY: told by the caller; STATEV and COORDS are as long as the numbers say.
+    unsafe {
+        let routine: Sdvini = std::mem::transmute(a.routine);
+        routine(
+            a.statev.as_mut_ptr(),
+            a.coords.as_mut_ptr(),
+            nstatv,
+            ncrds,
+            noel,
+            npt,
+            layer,
+            kspt,
+        );
+    }
+}
+
+/// First states by SDVINI.
+pub fn init_state(instance: &Instance, p: &mut Points<'_>) -> Result<(), String> {
+    let functions = instance.adapted.library.functions()?;
+    let Some(routine) = functions.sdvini else { return Ok(()) };
+    let states = &instance.adapted.states;
+    let n = states.len();
+    for k in 0..p.n {
+        let mut data = FirstState {
+            routine,
+            statev: vec![UNTOUCHED; n + BEHIND],
+            coords: std::array::from_fn(|axis| p.inputs[POSITION + axis][k]),
+            numbers: [n as i32, 3, p.inputs[PARTICLE_ID][k] as i32 + 1, 1, 1, 1],
+        };
+        for (value, place) in data.statev.iter_mut().zip(states) {
+            *value = place.factor * p.state1[place.component * p.stride + k];
+        }
+        let pointer = (&raw mut data).cast();
+        // SAFETY: the data are those of an SDVINI; see `Arguments::call`.
+        let left = unsafe {
+            match functions.guard {
+                Some(guard) => guard(call_sdvini, pointer),
+                None => {
+                    call_sdvini(pointer);
+                    0
+                }
+            }
+        };
+        let id = p.inputs[PARTICLE_ID][k];
+        if left != 0 {
+            return Err(format!("SDVINI ended its call with XIT at particle {id}"));
+        }
+        if data.statev[n..].iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
+            return Err(format!(
+                "SDVINI wrote behind STATEV({n}); tell with `states` in the sidecar how many there are"
+            ));
+        }
+        for (value, place) in data.statev.iter().zip(states) {
+            if !value.is_finite() {
+                return Err(format!("SDVINI gave {value} at particle {id}"));
+            }
+            p.state1[place.component * p.stride + k] = value / place.factor;
+        }
+    }
+    Ok(())
+}
