@@ -9,13 +9,12 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 
 static HOST: AtomicPtr<lahar_host_api> = AtomicPtr::new(ptr::null_mut());
 
-/// Keeps the host table, if there is one that is long enough, and makes panics silent.
+/// Keeps the host table, if there is one that is long enough.
 ///
 /// # Safety
 ///
 /// `host` is NULL or points to a host table that stays valid for the life of the process.
 pub unsafe fn keep(host: *const lahar_host_api) {
-    std::panic::set_hook(Box::new(|_| ()));
     // SAFETY: told by the caller; every table of the ABI begins with its size.
     let size = unsafe { host.cast::<u32>().as_ref() }.copied().unwrap_or(0) as usize;
     if size >= size_of::<lahar_host_api>() {

@@ -4,6 +4,7 @@
 //! names, units, bounds, the number of state variables, stands in an optional file beside the library (`sidecar`). `describe` makes
 //! the tables of the ABI of both, `calls` has their functions, `umat` and `vumat` call the routine. README.md is the manual.
 
+pub mod build;
 mod calls;
 mod describe;
 mod fpenv;
@@ -21,17 +22,29 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::ptr;
 
-/// A plugin of the library with a UMAT or VUMAT at `path`; NULL, after `set_error`, if it has none.
+/// A plugin of the library with a UMAT or VUMAT at `path`; NULL, after `set_error`, if it has none. The panic hook of this library's own
+/// standard library is made silent, since a plugin must not print.
 ///
 /// # Safety
 ///
-/// `host` is NULL or a host table that stays valid for the life of the process, `path` is NULL or a text that ends with a NUL. The
-/// initialisers of the library run.
+/// As for [`adapt`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_plugin_adapt_v1(
     host: *const lahar_host_api,
     path: *const c_char,
 ) -> *const lahar_plugin_desc {
+    std::panic::set_hook(Box::new(|_| ()));
+    // SAFETY: told by the caller.
+    unsafe { adapt(host, path) }
+}
+
+/// What [`lahar_plugin_adapt_v1`] does, for programs that link the adapter and have a panic hook of their own.
+///
+/// # Safety
+///
+/// `host` is NULL or a host table that stays valid for the life of the process, `path` is NULL or a text that ends with a NUL; one call at a
+/// time. The initialisers of the library run.
+pub unsafe fn adapt(host: *const lahar_host_api, path: *const c_char) -> *const lahar_plugin_desc {
     // SAFETY: told by the caller.
     unsafe { host::keep(host) };
     let adapted = host::guard(|| {

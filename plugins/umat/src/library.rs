@@ -4,6 +4,7 @@ use crate::host;
 use crate::sidecar::{Routine, Threads};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use std::cell::RefCell;
+use std::error::Error;
 use std::ffi::{c_char, c_int, c_void};
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
@@ -129,7 +130,7 @@ impl UserLibrary {
 fn open(path: &Path, wanted: Option<Routine>) -> Result<(Routine, Functions), String> {
     // SAFETY: the host asked for this library to be loaded, whose initialisers then run.
     let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| {
-        let text = e.to_string();
+        let text = e.source().map_or_else(|| e.to_string(), |cause| cause.to_string());
         let advice = match text.contains("undefined symbol") {
             true => "; build it with `lahar plugin umat-build`, which links the utility routines of Abaqus",
             false => "",

@@ -4,7 +4,8 @@
 ///
 /// `at(i, j)` is component (i, j) of the `ntens` times `ntens` stiffness with engineering shears (`DDSDDE`). It is split into its isotropic
 /// part (λ, μ), projected orthogonally, and the rest D. For unit vectors m, n the tensor sym(m ⊗ n) is no longer than 1, so that
-/// m·A(n)·m ≤ max(λ + 2 μ, μ) + |D| with the Frobenius norm.
+/// m·A(n)·m is at most max(λ + 2 μ, μ) and the largest eigenvalue of D, which is at most √((n − 1)/n) |D| for the n = `ntens` of a tensor without
+/// trace, with the Frobenius norm.
 #[inline(always)]
 pub fn wave_modulus(ntens: usize, at: impl Fn(usize, usize) -> f64) -> f64 {
     let (mut bulk, mut trace) = (0.0, 0.0);
@@ -35,7 +36,8 @@ pub fn wave_modulus(ntens: usize, at: impl Fn(usize, usize) -> f64) -> f64 {
             rest += weight * d * d;
         }
     }
-    mu.max(lambda + 2.0 * mu) + rest.sqrt()
+    let n = ntens as f64;
+    mu.max(lambda + 2.0 * mu) + (rest * (n - 1.0) / n).sqrt()
 }
 
 #[cfg(test)]
