@@ -343,7 +343,12 @@ impl Block {
                 let relative = [-w12 - turn[0], w02 - turn[1], -w01 - turn[2]];
                 let relative: [f64; 3] =
                     std::array::from_fn(|a| (0..3).map(|b| back1[3 * a + b] * relative[b]).sum());
-                put(&mut self.rel_spin_inc, m, k, &relative[6 - ntens..][..ntens - 3]);
+                put(
+                    &mut self.rel_spin_inc,
+                    m,
+                    k,
+                    if ntens == 6 { &relative } else { &relative[2..] },
+                );
                 for (end, (back, f)) in [(back0, &old), (back1, &new)].into_iter().enumerate() {
                     let u = product(back, lane(f, i));
                     let u = crate::kinematics::SYMMETRIC.map(|(a, b)| u[3 * a + b]);
