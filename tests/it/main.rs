@@ -1,6 +1,7 @@
 //! The integration tests, one binary: each module is one concern.
 #![allow(clippy::print_stdout)] // tests report the figures that they judge
 
+mod columns;
 mod compiler;
 mod setup;
 mod support;
@@ -20,8 +21,8 @@ mod kernels;
 mod loading;
 mod objectivity;
 mod order;
-mod plugin_tool;
 mod own_material;
+mod plugin_tool;
 mod plugins;
 mod readme;
 mod register;

@@ -1,7 +1,7 @@
 //! `lahar plugin`: every shipped plugin keeps the rules, every bad one is caught by the right rule with the right sentence, and the
 //! tool outlives them all.
 
-use crate::support::{bad_plugin, plugin_path, repository, scratch_folder, target_folder};
+use crate::support::{bad_plugin, plugin_path, scratch_folder, shipped, target_folder};
 use std::fs;
 use std::process::{Command, Output};
 
@@ -41,20 +41,6 @@ fn refused(arguments: &[&str], texts: &[&str]) {
         assert!(err.contains(part), "{arguments:?}: `{part}` is not in: {err}");
     }
     assert!(err.starts_with("error: ") && err.lines().count() == 1, "{err}");
-}
-
-/// The names of the shipped plugins; an adapter of foreign libraries is none itself.
-fn shipped() -> Vec<String> {
-    let folders = fs::read_dir(repository("plugins")).expect("the folder of plugins");
-    let names = folders.map(|entry| entry.expect("an entry")).filter_map(|entry| {
-        let name = entry.file_name().into_string().expect("UTF-8");
-        let is_plugin = entry.path().join("plugin/Cargo.toml").is_file() && name != "umat";
-        is_plugin.then(|| name.replace('-', "_"))
-    });
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    assert!(names.len() >= 5, "{names:?}");
-    names
 }
 
 #[test]

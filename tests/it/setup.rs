@@ -29,6 +29,13 @@ fn with_plugins(context: Arc<Context>) -> Arc<Context> {
     context
 }
 
+/// A context with one shipped plugin and one thread.
+pub fn context_of(plugin: &str) -> Arc<Context> {
+    let context = Context::new(Some(1)).expect("a context");
+    context.load_plugin(&plugin_path(plugin)).expect("a plugin");
+    context
+}
+
 /// A linear elastic material.
 pub fn elastic(context: &Context, e: f64, nu: f64) -> Arc<Material> {
     let values = [("youngs_modulus", e), ("poissons_ratio", nu)];

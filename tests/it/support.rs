@@ -18,6 +18,20 @@ pub fn plugin_path(name: &str) -> String {
     path.to_str().expect("a UTF-8 path").to_string()
 }
 
+/// The names of the shipped plugins; an adapter of foreign libraries is none itself.
+pub fn shipped() -> Vec<String> {
+    let folders = std::fs::read_dir(repository("plugins")).expect("the folder of plugins");
+    let names = folders.map(|entry| entry.expect("an entry")).filter_map(|entry| {
+        let name = entry.file_name().into_string().expect("UTF-8");
+        let is_plugin = entry.path().join("plugin/Cargo.toml").is_file() && name != "umat";
+        is_plugin.then(|| name.replace('-', "_"))
+    });
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    assert!(names.len() >= 5, "{names:?}");
+    names
+}
+
 /// The folder of the profile that this test was built in: `target/release`.
 pub fn target_folder() -> PathBuf {
     let test = std::env::current_exe().expect("the path of the running test");
