@@ -85,9 +85,8 @@ impl Model for OwnMaterial {
 
     #[inline(always)]
     fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.speed(density[k]));
+        for (k, density) in batch.input(0).iter().enumerate() {
+            batch.set_wave_speed(k, self.speed(*density));
         }
     }
 }
