@@ -31,3 +31,4 @@ mod sparse_grid;
 mod templates;
 mod tidy;
 mod vtp;
+mod write_a_material;
