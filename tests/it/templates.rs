@@ -1,7 +1,7 @@
 //! The templates that authors copy, `plugins/template`: each is built by the line that stands in it, and all are the same model.
 
 use super::compiler::{self, library_folder, read, run};
-use super::support::{repository, scratch_folder};
+use super::support::{repository, scratch_folder, target_folder};
 use lahar::context::Context;
 use lahar::error::Status;
 use lahar::material::{Material, Model, StressBatch};
@@ -202,6 +202,10 @@ fn all_templates_are_built_by_their_own_lines_and_give_equal_results_bit_for_bit
         let nm = run(Command::new("nm").args(["-D", "--defined-only"]).arg(&library));
         let symbols: Vec<_> = nm.lines().filter_map(|l| l.split_whitespace().last()).collect();
         assert_eq!(symbols, ["lahar_plugin_entry_v1"], "{name}");
+
+        // It keeps the rules of the conformance suite.
+        let mut lahar = Command::new(target_folder().join("lahar"));
+        run(lahar.args(["plugin", "check"]).arg(&library));
 
         let context = context(&library);
         let material = Material::new(&context, "own_material", &VALUES).unwrap();
