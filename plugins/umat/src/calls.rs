@@ -225,21 +225,23 @@ impl<'a> Points<'a> {
 
     /// Component `c` of the points from `k` on, zero in lanes without a point.
     #[inline(always)]
-    pub fn load(&self, data: &[f64], c: usize, k: usize) -> Lane {
+    fn load(&self, data: &[f64], c: usize, k: usize, out: &mut Lane) {
         let first = c * self.stride + k;
-        if let Some(whole) = data.get(first..first + LANES).filter(|_| k + LANES <= self.n) {
-            let mut out = [0.0; LANES];
-            out.copy_from_slice(whole);
-            return out;
+        if k + LANES <= self.n {
+            out.copy_from_slice(&data[first..first + LANES]);
+        } else {
+            let m = self.n - k;
+            out[..m].copy_from_slice(&data[first..first + m]);
+            out[m..].fill(0.0);
         }
-        let m = self.n - k;
-        std::array::from_fn(|i| if i < m { data[first + i] } else { 0.0 })
     }
 
     /// All components of the points from `k` on.
     #[inline(always)]
-    pub fn load_all<const N: usize>(&self, data: &[f64], first: usize, k: usize) -> [Lane; N] {
-        std::array::from_fn(|c| self.load(data, first + c, k))
+    pub fn load_all(&self, data: &[f64], first: usize, k: usize, out: &mut [Lane]) {
+        for (c, lane) in out.iter_mut().enumerate() {
+            self.load(data, first + c, k, lane);
+        }
     }
 }
 

@@ -16,27 +16,40 @@ const INDEX: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// `formula(k)` of every lane k, component by component.
 #[inline(always)]
-pub fn lanes<const N: usize>(formula: impl Fn(usize) -> [f64; N]) -> [Lane; N] {
-    let mut out = [[0.0; LANES]; N];
+pub fn lanes<const N: usize>(out: &mut [Lane; N], formula: impl Fn(usize) -> [f64; N]) {
     for k in 0..LANES {
         let value = formula(k);
         for c in 0..N {
             out[c][k] = value[c];
         }
     }
-    out
+}
+
+/// No lanes yet.
+pub const fn zero<const N: usize>() -> [Lane; N] {
+    [[0.0; LANES]; N]
 }
 
 /// The components of lane k.
 #[inline(always)]
 pub fn lane<const N: usize>(lanes: &[Lane; N], k: usize) -> [f64; N] {
-    std::array::from_fn(|c| lanes[c][k])
+    components(|c| lanes[c][k])
+}
+
+/// `component(c)` of every c. What `std::array::from_fn` does, but always inlined.
+#[inline(always)]
+pub fn components<const N: usize>(component: impl Fn(usize) -> f64) -> [f64; N] {
+    let mut out = [0.0; N];
+    for (c, value) in out.iter_mut().enumerate() {
+        *value = component(c);
+    }
+    out
 }
 
 /// a b.
 #[inline(always)]
 pub fn product(a: [f64; 9], b: [f64; 9]) -> [f64; 9] {
-    std::array::from_fn(|c| {
+    components(|c| {
         let (i, j) = (c / 3, c % 3);
         a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j]
     })
@@ -45,15 +58,15 @@ pub fn product(a: [f64; 9], b: [f64; 9]) -> [f64; 9] {
 /// aᵀ.
 #[inline(always)]
 pub fn transposed(a: [f64; 9]) -> [f64; 9] {
-    std::array::from_fn(|c| a[3 * (c % 3) + c / 3])
+    components(|c| a[3 * (c % 3) + c / 3])
 }
 
 /// r s rᵀ of a symmetric tensor.
 #[inline(always)]
 pub fn rotated(r: [f64; 9], s: [f64; 6]) -> [f64; 6] {
-    let full = std::array::from_fn(|c| s[INDEX[c / 3][c % 3]]);
+    let full: [f64; 9] = components(|c| s[INDEX[c / 3][c % 3]]);
     let half = product(r, full);
-    std::array::from_fn(|c| {
+    components(|c| {
         let (i, j) = SYMMETRIC[c];
         half[3 * i] * r[3 * j] + half[3 * i + 1] * r[3 * j + 1] + half[3 * i + 2] * r[3 * j + 2]
     })
@@ -62,14 +75,17 @@ pub fn rotated(r: [f64; 9], s: [f64; 6]) -> [f64; 6] {
 /// dt sym L.
 #[inline(always)]
 pub fn strain_increment(l: [f64; 9], dt: f64) -> [f64; 6] {
-    SYMMETRIC.map(|(i, j)| 0.5 * dt * (l[3 * i + j] + l[3 * j + i]))
+    components(|c| {
+        let (i, j) = SYMMETRIC[c];
+        0.5 * dt * (l[3 * i + j] + l[3 * j + i])
+    })
 }
 
 /// (I + dt L) F.
 #[inline(always)]
 pub fn deformed(f: [f64; 9], l: [f64; 9], dt: f64) -> [f64; 9] {
     let lf = product(l, f);
-    std::array::from_fn(|c| f[c] + dt * lf[c])
+    components(|c| f[c] + dt * lf[c])
 }
 
 /// Components (0, 1), (1, 2) and (0, 2) of W dt, W = skw L.
@@ -81,10 +97,11 @@ pub fn spin(l: [f64; 9], dt: f64) -> [f64; 3] {
 /// exp(W dt) of eight velocity gradients, by Rodrigues' formula: the rotation with which the engine turns the stress of other models.
 /// Small angles take the series, whose next term is below the round-off.
 #[inline(always)]
-pub fn step_rotations(l: &[Lane; 9], dt: f64) -> [Lane; 9] {
+pub fn step_rotations(l: &[Lane; 9], dt: f64, out: &mut [Lane; 9]) {
     const SMALL: f64 = 1e-3;
-    let w = lanes(|k| spin(lane(l, k), dt));
-    let mut factors = lanes(|k| {
+    let (mut w, mut factors) = (zero(), zero());
+    lanes(&mut w, |k| spin(lane(l, k), dt));
+    lanes(&mut factors, |k| {
         let [x, y, z] = lane(&w, k);
         series(x * x + y * y + z * z)
     });
@@ -97,7 +114,7 @@ pub fn step_rotations(l: &[Lane; 9], dt: f64) -> [Lane; 9] {
             factors[1][k] = 0.5 * (half.sin() / half).powi(2);
         }
     }
-    lanes(|k| {
+    lanes(out, |k| {
         let ([x, y, z], [a, b]) = (lane(&w, k), lane(&factors, k));
         let (xx, yy, zz) = (b * x * x, b * y * y, b * z * z);
         let (xy, yz, xz) = (b * x * y, b * y * z, b * x * z);
@@ -112,7 +129,7 @@ pub fn step_rotations(l: &[Lane; 9], dt: f64) -> [Lane; 9] {
             -a * y - xz,
             1.0 - yy - zz,
         ]
-    })
+    });
 }
 
 /// sin(θ)/θ and (1 − cos θ)/θ² for t = θ² below 1e-3.
@@ -132,9 +149,9 @@ pub fn polar_rotation(f: [f64; 9]) -> [f64; 9] {
     for step in 0..8 {
         let cofactor = cofactors(x);
         let inverse = 1.0 / (x[0] * cofactor[0] + x[1] * cofactor[1] + x[2] * cofactor[2]);
-        let y: [f64; 9] = std::array::from_fn(|c| cofactor[c] * inverse); // X⁻ᵀ
+        let y: [f64; 9] = components(|c| cofactor[c] * inverse); // X⁻ᵀ
         let scale = if step < 5 { (squares(y) / squares(x)).sqrt().sqrt() } else { 1.0 };
-        x = std::array::from_fn(|c| 0.5 * (scale * x[c] + y[c] / scale));
+        x = components(|c| 0.5 * (scale * x[c] + y[c] / scale));
     }
     x
 }
@@ -151,7 +168,7 @@ pub fn rotation_vector(r: [f64; 9]) -> [f64; 3] {
 /// det(A) A⁻ᵀ.
 #[inline(always)]
 fn cofactors(a: [f64; 9]) -> [f64; 9] {
-    std::array::from_fn(|c| {
+    components(|c| {
         let (i, j) = (c / 3, c % 3);
         let (k, l, m, n) = (3 * ((i + 1) % 3), 3 * ((i + 2) % 3), (j + 1) % 3, (j + 2) % 3);
         a[k + m] * a[l + n] - a[k + n] * a[l + m]
@@ -167,6 +184,12 @@ fn squares(a: [f64; 9]) -> f64 {
 mod tests {
     use super::*;
 
+    fn rotation(l: [f64; 9]) -> [f64; 9] {
+        let mut r = zero();
+        step_rotations(&l.map(|x| [x; LANES]), 1.0, &mut r);
+        lane(&r, 3)
+    }
+
     fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
         a.iter().zip(b).all(|(x, y)| (x - y).abs() <= tolerance)
     }
@@ -175,7 +198,7 @@ mod tests {
     fn the_rotation_of_a_step_is_the_rotation_by_its_angle() {
         for angle in [0.0, 1e-6, 0.03, 0.0317, 0.7, -2.0] {
             let l = [0.0, -angle, 0.0, angle, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let r = lane(&step_rotations(&l.map(|x: f64| [x; LANES]), 1.0), 3);
+            let r = rotation(l);
             let (s, c) = f64::sin_cos(angle);
             assert!(close(&r, &[c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0], 1e-15), "{angle}: {r:?}");
         }
@@ -184,7 +207,7 @@ mod tests {
     #[test]
     fn the_polar_rotation_and_the_rotation_vector_give_back_a_rotation() {
         let l = [0.0, -0.5, 0.3, 0.5, 0.0, -0.2, -0.3, 0.2, 0.0];
-        let r = lane(&step_rotations(&l.map(|x| [x; LANES]), 1.0), 0);
+        let r = rotation(l);
         assert!(close(&product(r, transposed(r)), &IDENTITY, 1e-15));
         assert!(close(&rotation_vector(r), &[0.2, 0.3, 0.5], 1e-14));
         let stretch = [1.5, 0.2, 0.0, 0.2, 0.8, -0.1, 0.0, -0.1, 1.1];

@@ -10,8 +10,8 @@ use crate::describe::{
 use crate::fpenv;
 use crate::host::log;
 use crate::kinematics::{
-    IDENTITY, LANES, Lane, deformed, lane, lanes, rotated, step_rotations, strain_increment,
-    transposed,
+    IDENTITY, LANES, Lane, components, deformed, lane, lanes, rotated, step_rotations,
+    strain_increment, transposed, zero,
 };
 use crate::library::Functions;
 use crate::modulus::wave_modulus;
@@ -44,7 +44,10 @@ struct Arguments {
     routine: *const c_void,
     hidden_length: HiddenLength,
     stress: [f64; 6],
-    ddsdde: [f64; 36],
+    /// One of each of eight points, looked at together afterwards.
+    ddsdde: [[f64; 36]; LANES],
+    /// Which of them is called.
+    lane: usize,
     energies: [f64; 3],
     rpl: f64,
     ddsddt: [f64; 6],
@@ -78,6 +81,8 @@ struct Arguments {
     kinc: i32,
     statev: Vec<f64>,
     props: Vec<f64>,
+    /// How vector arithmetic is to be after each call.
+    control: u32,
 }
 
 // SAFETY: the address of a routine, which is called on the thread that has set it only.
@@ -97,13 +102,14 @@ unsafe extern "C" fn call(data: *mut c_void) {
     // SAFETY: told by the caller.
     let a = unsafe { &mut *data.cast::<Arguments>() };
     let [sse, spd, scd] = &mut a.energies;
+    let ddsdde = a.ddsdde[a.lane & (LANES - 1)].as_mut_ptr();
     macro_rules! call {
         ($kind:ty $(, $length:expr)?) => {{
             // SAFETY: the caller says that the routine is a UMAT; the pointers are to places as long as it expects.
             unsafe {
                 let routine: $kind = std::mem::transmute(a.routine);
                 routine(
-                    a.stress.as_mut_ptr(), a.statev.as_mut_ptr(), a.ddsdde.as_mut_ptr(), sse, spd, scd, &mut a.rpl,
+                    a.stress.as_mut_ptr(), a.statev.as_mut_ptr(), ddsdde, sse, spd, scd, &mut a.rpl,
                     a.ddsddt.as_mut_ptr(), a.drplde.as_mut_ptr(), &mut a.drpldt, a.stran.as_mut_ptr(),
                     a.dstran.as_mut_ptr(), a.time.as_mut_ptr(), &mut a.dtime, &mut a.temp, &mut a.dtemp,
                     a.predef.as_mut_ptr(), a.dpred.as_mut_ptr(), a.cmname.as_mut_ptr().cast(), &mut a.ndi, &mut a.nshr,
@@ -121,7 +127,7 @@ unsafe extern "C" fn call(data: *mut c_void) {
     }
 }
 
-/// What eight points have in common on the way in.
+/// The kinematics of eight points.
 struct Start {
     stress: [Lane; 6],
     strain: [Lane; 6],
@@ -131,11 +137,14 @@ struct Start {
     new: [Lane; 9],
 }
 
-/// What became of a point.
-enum Outcome {
-    Done { modulus: f64 },
-    Failed,
-    Left,
+/// What a call left, before its numbers are looked at.
+#[derive(Clone, Copy)]
+struct Outcome {
+    /// XIT ended it.
+    left: bool,
+    /// Stress and state are finite.
+    finite: bool,
+    pnewdt: f64,
 }
 
 /// Runs `update`, or `wave_speed`: a step without strain of which only the tangent counts.
@@ -145,12 +154,16 @@ pub fn run(instance: &Instance, p: &mut Points<'_>, call: Call) -> Result<(), St
         in_plane(p)?;
     }
     ARGUMENTS.with_borrow_mut(|a| {
-        a.begin(instance, &functions, p);
-        let mut left = None;
-        for k in (0..p.n).step_by(LANES) {
-            let start = start(instance.adapted, p, call, k);
-            left = left.or(eight(instance, &functions, a, p, (call, k), &start)?);
-        }
+        a.begin(instance, &functions);
+        #[cfg(target_arch = "x86_64")]
+        let left = match is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has the instructions.
+            true => unsafe { all_avx2(instance, &functions, a, p, call) },
+            false => all(instance, &functions, a, p, call),
+        };
+        #[cfg(not(target_arch = "x86_64"))]
+        let left = all(instance, &functions, a, p, call);
+        let left = left?;
         if let Some(id) = left {
             log(
                 LAHAR_PLUGIN_LOG_WARNING,
@@ -172,31 +185,76 @@ pub fn in_plane(p: &Points<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Kinematics of the points from `k` on: the start stress turned with the material, as Abaqus does before it calls.
-#[inline(always)]
-fn start(adapted: &Adapted, p: &Points<'_>, call: Call, k: usize) -> Start {
-    let stress = p.load_all(p.stress0, 0, k);
-    let strain = p.load_all(p.state0, adapted.total_strain, k);
-    let h: [Lane; 9] = p.load_all(p.state0, adapted.displacement_gradient, k);
-    let old = lanes(|k| std::array::from_fn(|c| h[c][k] + IDENTITY[c]));
-    if call == Call::WaveSpeed {
-        let rotation = IDENTITY.map(|x| [x; LANES]);
-        let increment = [[0.0; LANES]; 6];
-        return Start { stress, strain, increment, rotation, old, new: old };
-    }
-    let l: [Lane; 9] = p.load_all(p.gradient, 0, k);
-    let rotation = step_rotations(&l, p.dt);
-    Start {
-        stress: lanes(|k| rotated(lane(&rotation, k), lane(&stress, k))),
-        strain,
-        increment: lanes(|k| strain_increment(lane(&l, k), p.dt)),
-        rotation,
-        new: lanes(|k| deformed(lane(&old, k), lane(&l, k), p.dt)),
-        old,
+impl Start {
+    const STILL: Self = Self {
+        stress: [[0.0; LANES]; 6],
+        strain: [[0.0; LANES]; 6],
+        increment: [[0.0; LANES]; 6],
+        rotation: [[0.0; LANES]; 9],
+        old: [[0.0; LANES]; 9],
+        new: [[0.0; LANES]; 9],
+    };
+
+    /// The points from `k` on: the start stress is turned with the material, as Abaqus does before it calls.
+    #[inline(always)]
+    fn fill(&mut self, adapted: &Adapted, p: &Points<'_>, call: Call, k: usize) {
+        let mut stress = zero();
+        p.load_all(p.stress0, 0, k, &mut stress);
+        p.load_all(p.state0, adapted.total_strain, k, &mut self.strain);
+        p.load_all(p.state0, adapted.displacement_gradient, k, &mut self.old);
+        for c in 0..9 {
+            for i in 0..LANES {
+                self.old[c][i] += IDENTITY[c];
+            }
+        }
+        if call == Call::WaveSpeed {
+            self.stress = stress;
+            self.rotation = IDENTITY.map(|x| [x; LANES]);
+            self.new = self.old;
+            return;
+        }
+        let mut l = zero();
+        p.load_all(p.gradient, 0, k, &mut l);
+        step_rotations(&l, p.dt, &mut self.rotation);
+        let (r, f) = (&self.rotation, &self.old);
+        lanes(&mut self.stress, |k| rotated(lane(r, k), lane(&stress, k)));
+        lanes(&mut self.increment, |k| strain_increment(lane(&l, k), p.dt));
+        lanes(&mut self.new, |k| deformed(lane(f, k), lane(&l, k), p.dt));
     }
 }
 
+/// Calls the routine for all points; the id of the first that ended by XIT.
+#[inline(always)]
+fn all(
+    instance: &Instance,
+    functions: &Functions,
+    a: &mut Arguments,
+    p: &mut Points<'_>,
+    call: Call,
+) -> Result<Option<f64>, String> {
+    let (mut start, mut left) = (Start::STILL, None);
+    for k in (0..p.n).step_by(LANES) {
+        start.fill(instance.adapted, p, call, k);
+        left = left.or(eight(instance, functions, a, p, (call, k), &start)?);
+    }
+    Ok(left)
+}
+
+/// The same with wider instructions: no product is fused with a sum, so the numbers are the same.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn all_avx2(
+    instance: &Instance,
+    functions: &Functions,
+    a: &mut Arguments,
+    p: &mut Points<'_>,
+    call: Call,
+) -> Result<Option<f64>, String> {
+    all(instance, functions, a, p, call)
+}
+
 /// Calls the routine for the points from `k` on and writes what they gave; the id of the first that ended by XIT.
+#[inline(always)]
 fn eight(
     instance: &Instance,
     functions: &Functions,
@@ -207,36 +265,45 @@ fn eight(
 ) -> Result<Option<f64>, String> {
     let adapted = instance.adapted;
     let (shape, update) = ((p.n, p.stride), call == Call::Update);
-    let mut left = None;
+    let (m, mut left) = (LANES.min(p.n - k), None);
+    let mut outcomes = [Outcome { left: false, finite: true, pnewdt: 0.0 }; LANES];
     let mut stress = start.stress;
-    for i in 0..LANES.min(p.n - k) {
+    for (i, outcome) in outcomes[..m].iter_mut().enumerate() {
         a.set(instance, p, start, (k, i));
-        let outcome = a.call(instance, functions)?;
-        let density = p.inputs[DENSITY][k + i];
-        let mut speed = 0.0;
-        if let Outcome::Done { modulus } = outcome {
-            speed = (modulus / density).sqrt();
-        } else if let Outcome::Left = outcome {
-            left = left.or(Some(p.inputs[PARTICLE_ID][k + i]));
-        }
-        p.wave_speed[k + i] = speed;
+        *outcome = a.call(instance, functions)?;
         if update {
-            let done = matches!(outcome, Outcome::Done { .. });
-            a.keep_state(adapted, p, k + i, done);
+            a.keep_state(adapted, p, k + i);
             for c in 0..adapted.ntens {
                 stress[ORDER[c]][i] = a.stress[c];
             }
-            a.judge(p, k + i, done);
+        }
+    }
+    for (i, outcome) in outcomes[..m].iter().enumerate() {
+        let (at, modulus) = (k + i, wave_modulus(adapted.ntens, &a.ddsdde[i]));
+        let done = outcome.finite && outcome.pnewdt > 0.0 && modulus < f64::INFINITY;
+        if outcome.left || !done {
+            p.wave_speed[at] = 0.0;
+            left = left.or(outcome.left.then_some(p.inputs[PARTICLE_ID][at]));
+            fail(adapted, p, at, update);
+            continue;
+        }
+        let modulus = modulus.max(instance.floor);
+        if !(modulus > 0.0) {
+            return Err(no_tangent());
+        }
+        p.wave_speed[at] = (modulus / p.inputs[DENSITY][at]).sqrt();
+        if update {
+            judge(p, at, outcome.pnewdt);
         }
     }
     if update {
         for c in 0..6 {
             store(p.stress1, shape, c, k, &stress[c]);
-            let strain = std::array::from_fn(|i| start.strain[c][i] + start.increment[c][i]);
+            let strain = components(|i| start.strain[c][i] + start.increment[c][i]);
             store(p.state1, shape, adapted.total_strain + c, k, &strain);
         }
         for c in 0..9 {
-            let h = std::array::from_fn(|i| start.new[c][i] - IDENTITY[c]);
+            let h = components(|i| start.new[c][i] - IDENTITY[c]);
             store(p.state1, shape, adapted.displacement_gradient + c, k, &h);
         }
     }
@@ -248,7 +315,8 @@ impl Arguments {
         routine: std::ptr::null(),
         hidden_length: HiddenLength::SizeT,
         stress: [0.0; 6],
-        ddsdde: [0.0; 36],
+        ddsdde: [[0.0; 36]; LANES],
+        lane: 0,
         energies: [0.0; 3],
         rpl: 0.0,
         ddsddt: [0.0; 6],
@@ -282,11 +350,13 @@ impl Arguments {
         kinc: 1,
         statev: Vec::new(),
         props: Vec::new(),
+        control: 0,
     };
 
     /// Room for this material.
-    fn begin(&mut self, instance: &Instance, functions: &Functions, _: &Points<'_>) {
+    fn begin(&mut self, instance: &Instance, functions: &Functions) {
         self.routine = functions.routine;
+        self.control = fpenv::control();
         self.hidden_length = instance.adapted.hidden_length;
         self.statev.clear();
         self.statev.resize(instance.adapted.states.len() + BEHIND, UNTOUCHED);
@@ -307,7 +377,7 @@ impl Arguments {
         self.drot = transposed(lane(&start.rotation, i));
         self.dfgrd0 = transposed(lane(&start.old, i));
         self.dfgrd1 = transposed(lane(&start.new, i));
-        self.ddsdde = [0.0; 36];
+        (self.lane, self.ddsdde[i]) = (i, [0.0; 36]);
         (self.ddsddt, self.drplde) = ([0.0; 6], [0.0; 6]);
         (self.rpl, self.drpldt) = (0.0, 0.0);
         self.time = [p.time; 2];
@@ -335,14 +405,13 @@ impl Arguments {
         }
         self.energies = match adapted.energies {
             None => [0.0; 3],
-            Some(first) => std::array::from_fn(|e| p.state0[(first + e) * p.stride + at]),
+            Some(first) => components(|e| p.state0[(first + e) * p.stride + at]),
         };
     }
 
     /// Calls the routine and looks at what it gave.
     #[inline(always)]
     fn call(&mut self, instance: &Instance, functions: &Functions) -> Result<Outcome, String> {
-        let control = fpenv::control();
         let data = std::ptr::from_mut(self).cast();
         // SAFETY: the arguments are set for this routine. The guard of the utility routines calls `call(data)`, or jumps out of it.
         let left = unsafe {
@@ -354,26 +423,19 @@ impl Arguments {
                 }
             }
         };
-        fpenv::set_back(control);
-        let ntens = instance.adapted.ntens;
-        let behind = &self.statev[instance.adapted.states.len()..];
+        fpenv::set_back(self.control);
+        let (ntens, nstatv) = (instance.adapted.ntens, instance.adapted.states.len());
+        let behind = &self.statev[nstatv..];
         if behind.iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
             return Err(self.wrote_behind(instance));
         }
-        if left != 0 {
-            return Ok(Outcome::Left);
+        // By their bits: arithmetic on the results would wait for the routine.
+        let mut finite = true;
+        for x in self.stress[..ntens].iter().chain(&self.statev[..nstatv]) {
+            const INFINITE: u64 = f64::INFINITY.to_bits();
+            finite &= x.to_bits() & INFINITE != INFINITE;
         }
-        let modulus = wave_modulus(ntens, |i, j| self.ddsdde[i + ntens * j]);
-        let sum: f64 = self.stress[..ntens].iter().map(|x| 0.0 * x).sum();
-        let states: f64 = self.statev[..self.statev.len() - BEHIND].iter().map(|x| 0.0 * x).sum();
-        if sum + states + 0.0 * modulus != 0.0 || !(self.pnewdt > 0.0) {
-            return Ok(Outcome::Failed);
-        }
-        let modulus = modulus.max(instance.floor);
-        if !(modulus > 0.0) {
-            return Err(no_tangent());
-        }
-        Ok(Outcome::Done { modulus })
+        Ok(Outcome { left: left != 0, finite, pnewdt: self.pnewdt })
     }
 
     #[cold]
@@ -387,41 +449,59 @@ impl Arguments {
         )
     }
 
-    /// Writes the state at the end, or that of the start if the point failed.
+    /// Writes the state at the end.
     #[inline(always)]
-    fn keep_state(&mut self, adapted: &Adapted, p: &mut Points<'_>, at: usize, done: bool) {
+    fn keep_state(&mut self, adapted: &Adapted, p: &mut Points<'_>, at: usize) {
         for (value, place) in self.statev.iter().zip(&adapted.states) {
-            let to = place.component * p.stride + at;
-            p.state1[to] = if done { value / place.factor } else { p.state0[to] };
+            p.state1[place.component * p.stride + at] = value / place.factor;
         }
         for c in &adapted.unused {
             p.state1[c * p.stride + at] = p.state0[c * p.stride + at];
         }
         if let Some(first) = adapted.energies {
             for e in 0..3 {
-                let to = (first + e) * p.stride + at;
-                p.state1[to] = if done { self.energies[e] } else { p.state0[to] };
+                p.state1[(first + e) * p.stride + at] = self.energies[e];
             }
             if let Some(energy) = p.energy.get_mut(at) {
                 *energy = self.energies[0];
             }
         }
     }
+}
 
-    /// Writes status and wanted step.
-    #[inline(always)]
-    fn judge(&self, p: &mut Points<'_>, at: usize, done: bool) {
-        let smaller = done && self.pnewdt < 1.0;
-        if let Some(factor) = p.dt_factor.get_mut(at) {
-            *factor = if smaller { self.pnewdt } else { 1.0 };
+/// Writes status and wanted step of a point that is updated.
+#[inline(always)]
+fn judge(p: &mut Points<'_>, at: usize, pnewdt: f64) {
+    let smaller = pnewdt < 1.0;
+    if let Some(factor) = p.dt_factor.get_mut(at) {
+        *factor = if smaller { pnewdt } else { 1.0 };
+    }
+    if let Some(status) = p.status.get_mut(at) {
+        *status = if smaller { LAHAR_POINT_SMALLER_STEP } else { LAHAR_POINT_OK };
+    }
+}
+
+/// A point that failed ends with the state of its start.
+#[cold]
+fn fail(adapted: &Adapted, p: &mut Points<'_>, at: usize, update: bool) {
+    if !update {
+        return;
+    }
+    let own = [adapted.total_strain, adapted.displacement_gradient];
+    for c in 0..adapted.components {
+        let kept = c < own[0] || c >= own[1] + 9;
+        if kept {
+            p.state1[c * p.stride + at] = p.state0[c * p.stride + at];
         }
-        if let Some(status) = p.status.get_mut(at) {
-            *status = match (done, smaller) {
-                (false, _) => LAHAR_POINT_FAILED,
-                (true, true) => LAHAR_POINT_SMALLER_STEP,
-                (true, false) => LAHAR_POINT_OK,
-            };
-        }
+    }
+    if let Some(energy) = p.energy.get_mut(at) {
+        *energy = 0.0;
+    }
+    if let Some(factor) = p.dt_factor.get_mut(at) {
+        *factor = 1.0;
+    }
+    if let Some(status) = p.status.get_mut(at) {
+        *status = LAHAR_POINT_FAILED;
     }
 }
 

@@ -11,7 +11,7 @@ use crate::fpenv;
 use crate::host::log;
 use crate::kinematics::{
     IDENTITY, LANES, Lane, deformed, lane, lanes, polar_rotation, product, rotated,
-    rotation_vector, spin, strain_increment, transposed,
+    rotation_vector, spin, strain_increment, transposed, zero,
 };
 use crate::library::Functions;
 use crate::modulus::wave_modulus;
@@ -74,6 +74,8 @@ struct Block {
     ener_inelas: [Vec<f64>; 2],
     /// R at the end.
     rotation: Vec<[Lane; 9]>,
+    /// F at the end.
+    new: Vec<[Lane; 9]>,
 }
 
 // SAFETY: the address of a routine, which is called on the thread that has set it only.
@@ -186,11 +188,14 @@ pub fn first_modulus(instance: &Instance) -> Result<f64, String> {
         }
         let done = b.call(instance, &functions)?;
         // A tensor shear strain stands for two places: half of it is the component of the engineering shear.
-        let at = |i: usize, j: usize| {
-            let stress = b.stress[1][i * ntens + j];
-            if j < 3 { stress / STRAIN } else { 0.5 * stress / STRAIN }
-        };
-        let modulus = wave_modulus(ntens, at);
+        let mut tangent = [0.0; 36];
+        for i in 0..ntens {
+            for j in 0..ntens {
+                let half = if j < 3 { 1.0 } else { 0.5 };
+                tangent[i + ntens * j] = half * b.stress[1][i * ntens + j] / STRAIN;
+            }
+        }
+        let modulus = wave_modulus(ntens, &tangent);
         match done && modulus > 0.0 && modulus.is_finite() {
             true => Ok(modulus),
             false if instance.floor > 0.0 => Ok(0.0),
@@ -245,6 +250,7 @@ impl Block {
         ener_intern: [Vec::new(), Vec::new()],
         ener_inelas: [Vec::new(), Vec::new()],
         rotation: Vec::new(),
+        new: Vec::new(),
     };
 
     /// Room for `m` points, all zero.
@@ -285,6 +291,7 @@ impl Block {
             self.state[i].resize(nstatev * m + BEHIND, UNTOUCHED);
         }
         self.rotation.clear();
+        self.new.clear();
     }
 
     /// What is one value per point, and the state.
@@ -323,13 +330,16 @@ impl Block {
         let ntens = adapted.ntens;
         for k in (0..m).step_by(LANES) {
             let at = first + k;
-            let h: [Lane; 9] = p.load_all(p.state0, adapted.displacement_gradient, at);
-            let l: [Lane; 9] = p.load_all(p.gradient, 0, at);
-            let stress: [Lane; 6] = p.load_all(p.stress0, 0, at);
-            let old = lanes(|k| std::array::from_fn(|c| h[c][k] + IDENTITY[c]));
-            let new = lanes(|k| deformed(lane(&old, k), lane(&l, k), p.dt));
-            let r0 = lanes(|k| polar_rotation(lane(&old, k)));
-            let r1 = lanes(|k| polar_rotation(lane(&new, k)));
+            let (mut h, mut l, mut stress): ([Lane; 9], [Lane; 9], [Lane; 6]) =
+                (zero(), zero(), zero());
+            p.load_all(p.state0, adapted.displacement_gradient, at, &mut h);
+            p.load_all(p.gradient, 0, at, &mut l);
+            p.load_all(p.stress0, 0, at, &mut stress);
+            let (mut old, mut new, mut r0, mut r1) = (zero(), zero(), zero(), zero());
+            lanes(&mut old, |k| std::array::from_fn(|c| h[c][k] + IDENTITY[c]));
+            lanes(&mut new, |k| deformed(lane(&old, k), lane(&l, k), p.dt));
+            lanes(&mut r0, |k| polar_rotation(lane(&old, k)));
+            lanes(&mut r1, |k| polar_rotation(lane(&new, k)));
             for i in 0..LANES.min(m - k) {
                 let (k, back0, back1) = (k + i, transposed(lane(&r0, i)), transposed(lane(&r1, i)));
                 let l = lane(&l, i);
@@ -357,6 +367,7 @@ impl Block {
                 }
             }
             self.rotation.push(r1);
+            self.new.push(new);
         }
     }
 
@@ -423,7 +434,8 @@ impl Block {
         }
         for (block, r1) in self.rotation.iter().enumerate() {
             let k = block * LANES;
-            let here = lanes(|i| {
+            let mut here = zero();
+            lanes(&mut here, |i| {
                 let k = (k + i).min(m - 1);
                 let stress = std::array::from_fn(|c| {
                     if c < adapted.ntens { self.stress[1][c * m + k] } else { 0.0 }
@@ -433,13 +445,8 @@ impl Block {
             for (c, lane) in here.iter().enumerate() {
                 store(p.stress1, shape, c, first + k, lane);
             }
-            let h: [Lane; 9] = p.load_all(p.state0, adapted.displacement_gradient, first + k);
-            let l: [Lane; 9] = p.load_all(p.gradient, 0, first + k);
             for c in 0..9 {
-                let lane = std::array::from_fn(|i| {
-                    let old = std::array::from_fn(|c| h[c][i] + IDENTITY[c]);
-                    deformed(old, lane(&l, i), p.dt)[c] - IDENTITY[c]
-                });
+                let lane = std::array::from_fn(|i| self.new[block][c][i] - IDENTITY[c]);
                 store(p.state1, shape, adapted.displacement_gradient + c, first + k, &lane);
             }
         }

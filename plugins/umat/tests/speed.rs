@@ -8,7 +8,7 @@ use std::time::Instant;
 use support::{Material, adapt, library};
 
 const POINTS: usize = 512;
-const ROUNDS: usize = 400;
+const ROUNDS: usize = 20000;
 
 /// A loop over points that calls the bare UMAT with arrays of its own, as a program in C would.
 const BARE: &str = r"
