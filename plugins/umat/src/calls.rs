@@ -5,7 +5,7 @@ use crate::fpenv::Environment;
 use crate::host::guard;
 use crate::kinematics::{LANES, Lane};
 use crate::sidecar::Routine;
-use crate::{umat, vumat};
+use crate::{sdvini, umat, vumat};
 use lahar_plugin_abi::*;
 use std::ffi::c_void;
 use std::slice;
@@ -142,7 +142,7 @@ unsafe fn run(instance: *const c_void, batch: *const lahar_stress_batch, call: C
         let mut points = unsafe { Points::of(instance.adapted, batch, call) }?;
         let _environment = Environment::current();
         match (call, instance.adapted.library.routine) {
-            (Call::InitState, _) => umat::init_state(instance, &mut points),
+            (Call::InitState, _) => sdvini::init_state(instance, &mut points),
             (_, Routine::Umat) => umat::run(instance, &mut points, call),
             (Call::Update, Routine::Vumat) => vumat::update(instance, &mut points),
             (Call::WaveSpeed, Routine::Vumat) => vumat::wave_speed(instance, &mut points),

@@ -12,6 +12,7 @@ mod host;
 mod kinematics;
 mod library;
 mod modulus;
+mod sdvini;
 mod sidecar;
 mod umat;
 mod vumat;

@@ -32,20 +32,21 @@ macro_rules! umat_type {
 }
 
 /// STATEV(NSTATV + 1) and what follows: a routine that writes there was built for more state variables.
-const BEHIND: usize = 8;
-const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
+pub const BEHIND: usize = 8;
+/// What stands there.
+pub const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
 
 /// DTIME where no step is known yet, as in `wave_speed`.
 const SOME_STEP: f64 = 1e-6;
 
 /// The arguments of a call.
-#[repr(C)]
+#[repr(C, align(64))]
 struct Arguments {
+    /// One of each of eight points, looked at together afterwards.
+    ddsdde: [[f64; 36]; LANES],
     routine: *const c_void,
     hidden_length: HiddenLength,
     stress: [f64; 6],
-    /// One of each of eight points, looked at together afterwards.
-    ddsdde: [[f64; 36]; LANES],
     /// Which of them is called.
     lane: usize,
     energies: [f64; 3],
@@ -278,24 +279,27 @@ fn eight(
             }
         }
     }
+    let mut density = [[1.0; LANES]];
+    p.load_all(p.inputs[DENSITY], 0, k, &mut density);
+    let mut moduli = [0.0; LANES];
     for (i, outcome) in outcomes[..m].iter().enumerate() {
         let (at, modulus) = (k + i, wave_modulus(adapted.ntens, &a.ddsdde[i]));
         let done = outcome.finite && outcome.pnewdt > 0.0 && modulus < f64::INFINITY;
         if outcome.left || !done {
-            p.wave_speed[at] = 0.0;
             left = left.or(outcome.left.then_some(p.inputs[PARTICLE_ID][at]));
             fail(adapted, p, at, update);
             continue;
         }
-        let modulus = modulus.max(instance.floor);
-        if !(modulus > 0.0) {
+        moduli[i] = modulus.max(instance.floor);
+        if !(moduli[i] > 0.0) {
             return Err(no_tangent());
         }
-        p.wave_speed[at] = (modulus / p.inputs[DENSITY][at]).sqrt();
         if update {
             judge(p, at, outcome.pnewdt);
         }
     }
+    let speed = components(|i| (moduli[i] / density[0][i]).sqrt());
+    store(p.wave_speed, shape, 0, k, &speed);
     if update {
         for c in 0..6 {
             store(p.stress1, shape, c, k, &stress[c]);
@@ -510,91 +514,4 @@ fn no_tangent() -> String {
     "the UMAT left DDSDDE zero, from which the speed of waves comes; give `modulus`, a number [Pa] or the key of a parameter, in the \
      sidecar"
         .into()
-}
-
-type Sdvini = unsafe extern "C" fn(
-    *mut f64,
-    *mut f64,
-    *mut i32,
-    *mut i32,
-    *mut i32,
-    *mut i32,
-    *mut i32,
-    *mut i32,
-);
-
-struct FirstState {
-    routine: *const c_void,
-    statev: Vec<f64>,
-    coords: [f64; 3],
-    numbers: [i32; 6],
-}
-
-/// # Safety
-///
-/// As for [`call`], with a `FirstState` whose routine is an SDVINI.
-unsafe extern "C" fn call_sdvini(data: *mut c_void) {
-    // SAFETY: told by the caller.
-    let a = unsafe { &mut *data.cast::<FirstState>() };
-    let [nstatv, ncrds, noel, npt, layer, kspt] = &mut a.numbers;
-    // SAFETY: told by the caller; STATEV and COORDS are as long as the numbers say.
-    unsafe {
-        let routine: Sdvini = std::mem::transmute(a.routine);
-        routine(
-            a.statev.as_mut_ptr(),
-            a.coords.as_mut_ptr(),
-            nstatv,
-            ncrds,
-            noel,
-            npt,
-            layer,
-            kspt,
-        );
-    }
-}
-
-/// First states by SDVINI.
-pub fn init_state(instance: &Instance, p: &mut Points<'_>) -> Result<(), String> {
-    let functions = instance.adapted.library.functions()?;
-    let Some(routine) = functions.sdvini else { return Ok(()) };
-    let states = &instance.adapted.states;
-    let n = states.len();
-    for k in 0..p.n {
-        let mut data = FirstState {
-            routine,
-            statev: vec![UNTOUCHED; n + BEHIND],
-            coords: std::array::from_fn(|axis| p.inputs[POSITION + axis][k]),
-            numbers: [n as i32, 3, p.inputs[PARTICLE_ID][k] as i32 + 1, 1, 1, 1],
-        };
-        for (value, place) in data.statev.iter_mut().zip(states) {
-            *value = place.factor * p.state1[place.component * p.stride + k];
-        }
-        let pointer = (&raw mut data).cast();
-        // SAFETY: the data are those of an SDVINI; see `Arguments::call`.
-        let left = unsafe {
-            match functions.guard {
-                Some(guard) => guard(call_sdvini, pointer),
-                None => {
-                    call_sdvini(pointer);
-                    0
-                }
-            }
-        };
-        let id = p.inputs[PARTICLE_ID][k];
-        if left != 0 {
-            return Err(format!("SDVINI ended its call with XIT at particle {id}"));
-        }
-        if data.statev[n..].iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
-            return Err(format!(
-                "SDVINI wrote behind STATEV({n}); tell with `states` in the sidecar how many there are"
-            ));
-        }
-        for (value, place) in data.statev.iter().zip(states) {
-            if !value.is_finite() {
-                return Err(format!("SDVINI gave {value} at particle {id}"));
-            }
-            p.state1[place.component * p.stride + k] = value / place.factor;
-        }
-    }
-    Ok(())
 }

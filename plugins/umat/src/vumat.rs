@@ -16,6 +16,7 @@ use crate::kinematics::{
 use crate::library::Functions;
 use crate::modulus::wave_modulus;
 use crate::sidecar::HiddenLength;
+use crate::umat::{BEHIND, UNTOUCHED};
 use lahar_plugin_abi::*;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, c_void};
@@ -33,10 +34,6 @@ macro_rules! vumat_type {
 
 /// Most points of a call: VUMATs have arrays of `maxblk` = 136 of their own.
 const BLOCK: usize = 128;
-
-/// What stands behind the last state variable.
-const BEHIND: usize = 8;
-const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
 
 /// Components of the deformation gradient, row-major, in the order F11, F22, F33, F12, F23, F31, F21, F32, F13; in the plane the first four and F21.
 const GENERAL: [usize; 9] = [0, 4, 8, 1, 5, 6, 3, 7, 2];
