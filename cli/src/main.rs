@@ -7,6 +7,7 @@ mod check;
 mod info;
 mod plugin;
 mod point;
+mod replay;
 
 use clap::{Parser, Subcommand};
 use std::io::{ErrorKind, Write};
@@ -37,6 +38,8 @@ enum Command {
     Check(check::Arguments),
     /// Prints nanoseconds per point
     Bench(bench::Arguments),
+    /// Runs a point that failed in a step again, alone
+    Replay(replay::Arguments),
     /// Part of check
     #[command(hide = true)]
     CheckChild(check::child::Arguments),
@@ -48,6 +51,7 @@ fn main() -> ExitCode {
         Command::Info(arguments) => info::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::CheckChild(arguments) => check::child::run(&arguments),
     };
     result.unwrap_or_else(|text| {

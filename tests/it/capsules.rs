@@ -47,7 +47,7 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 /// A capsule of `nan_model`, and a context with the model.
-fn nan_capsule() -> (Arc<Context>, PathBuf) {
+pub fn nan_capsule() -> (Arc<Context>, PathBuf) {
     let (context, folder) = (context_with("nan_model"), scratch_folder());
     context.set_capsule_folder(Some(&folder)).unwrap();
     fail(&context, "nan_model");

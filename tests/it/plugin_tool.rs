@@ -1,6 +1,7 @@
 //! `lahar plugin`: every shipped plugin keeps the rules, every bad one is caught by the right rule with the right sentence, and the
 //! tool outlives them all.
 
+use crate::capsules::nan_capsule;
 use crate::support::{bad_plugin, plugin_path, scratch_folder, shipped, target_folder};
 use std::fs;
 use std::process::{Command, Output};
@@ -272,4 +273,55 @@ fn values_of_the_caller_reach_the_model() {
     let set = ["--set", "viscosity=0.5", "--set", "equation_of_state=linear"];
     let text = output(&[&["check", &path][..], &set].concat(), 0);
     assert!(text.contains("viscosity = 0.5, equation_of_state = 1"), "{text}");
+}
+
+#[test]
+fn a_point_that_failed_is_replayed_and_its_answer_compared() {
+    let (_, capsule) = nan_capsule();
+    let path = capsule.to_str().expect("UTF-8");
+    let text = output(&["replay", path], 0);
+    for part in [
+        "model nan_model at particle 7 of body 0, step 2, t = 0.002 s, dt = 0.001 s",
+        "plugin   org.lahar.test.nan_model 1.0",
+        "  second                             2.5",
+        "  strain_increment xx                -",
+        "  memory                             1.0",
+        "  stress1 xx                         NaN                        NaN\n",
+        "reproduced: the point",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
+    assert!(!text.contains("differs"), "{text}");
+
+    // Another state: the model does not fail.
+    let good = fs::read_to_string(&capsule).expect("a capsule");
+    let changed = scratch_folder().join("changed.json");
+    let changed_path = changed.to_str().expect("UTF-8");
+    let (start, rest) = good.split_once("\"end\"").expect("an end");
+    let other = start.replace("\"memory\": [\n      1.0", "\"memory\": [\n      0.0");
+    assert_ne!(other, start);
+    fs::write(&changed, format!("{other}\"end\"{rest}")).expect("a file");
+    let text = output(&["replay", changed_path], 1);
+    let differs = text.lines().filter(|line| line.contains("differs")).count();
+    assert!(differs == 1 && text.contains("not reproduced"), "{text}");
+    let json = output(&["replay", changed_path, "--json"], 1);
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["reproduced"], false);
+    assert!(json["again"]["stress1"][0].is_f64() && json["capsule"]["end"]["stress1"][0] == "NaN");
+
+    // Plugins that are elsewhere, or another.
+    refused(&["replay", "/nowhere/capsule.json"], &["/nowhere/capsule.json", "can not be read"]);
+    let elastic = plugin_path("linear_elastic");
+    refused(
+        &["replay", path, "--plugin", &elastic],
+        &["`nan_model`", "org.lahar.test.nan_model 1.0"],
+    );
+    let (before, after) = good.split_once("\"plugin_path\": \"").expect("a path");
+    let after = after.split_once('"').expect("its end").1;
+    for (file, part) in [("/nowhere/x.so", "--plugin another"), ("[org.x]", "linked into the host")]
+    {
+        fs::write(&changed, format!("{before}\"plugin_path\": \"{file}\"{after}")).expect("a file");
+        refused(&["replay", changed_path], &[part]);
+        output(&["replay", changed_path, "--plugin", &bad_plugin("nan_model")], 0);
+    }
 }
