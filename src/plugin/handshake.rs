@@ -4,6 +4,7 @@
 //! tables, what was expected and what was found.
 
 use super::adapter::Functions;
+use super::extensions::Extensions;
 use crate::error::{Error, Result, Status};
 use crate::material::{
     Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
@@ -31,24 +32,24 @@ struct Text {
 }
 
 /// Where in the tables we are; makes errors.
-struct Place<'a> {
+pub(super) struct Place<'a> {
     path: &'a Path,
-    at: String,
+    pub(super) at: String,
 }
 
 impl Place<'_> {
-    fn inside(&self, at: String) -> Place<'_> {
+    pub(super) fn inside(&self, at: String) -> Place<'_> {
         Place { path: self.path, at }
     }
 
-    fn error(&self, what: impl AsRef<str>) -> Error {
+    pub(super) fn error(&self, what: impl AsRef<str>) -> Error {
         let (path, at) = (self.path.display(), &self.at);
         let advice = "this is a mistake in the plugin, which its author must correct";
         let text = format!("plugin {path}: {at}: {}; {advice}", what.as_ref());
         Error::new(Status::PluginInvalid, text)
     }
 
-    fn ensure(&self, holds: bool, what: impl FnOnce() -> String) -> Result<()> {
+    pub(super) fn ensure(&self, holds: bool, what: impl FnOnce() -> String) -> Result<()> {
         if holds { Ok(()) } else { Err(self.error(what())) }
     }
 
@@ -96,7 +97,7 @@ impl Place<'_> {
     /// # Safety
     ///
     /// `table` is NULL or points to a table as long as its first member says, valid for the life of the process.
-    unsafe fn table<T>(&self, table: *const T) -> Result<&'static T> {
+    pub(super) unsafe fn table<T>(&self, table: *const T) -> Result<&'static T> {
         self.ensure(!table.is_null(), || "expected a table, got NULL".into())?;
         self.ensure(table.is_aligned(), || "the table is not aligned".into())?;
         // SAFETY: not NULL and aligned; every table of the ABI begins with its size.
@@ -116,7 +117,7 @@ impl Place<'_> {
     /// # Safety
     ///
     /// `base` is NULL or points to such an array, valid for the life of the process.
-    unsafe fn entries<T>(
+    pub(super) unsafe fn entries<T>(
         &self,
         what: &str,
         base: *const T,
@@ -222,18 +223,7 @@ unsafe fn read_model(
         (desc, place.identifier("name", desc.name, "")?)
     };
     let place = &place.inside(format!("model `{}`", name.text));
-    if desc.required_minor > LAHAR_PLUGIN_ABI_MINOR {
-        return Err(Error::new(
-            Status::PluginAbi,
-            format!(
-                "plugin {}: {}: it needs at least minor {} of the plugin ABI, this library speaks \
-                 {LAHAR_PLUGIN_ABI_MAJOR}.{LAHAR_PLUGIN_ABI_MINOR}; use a newer lahar or an older version of the plugin",
-                place.path.display(),
-                place.at,
-                desc.required_minor
-            ),
-        ));
-    }
+    check_minor(desc, place)?;
     let kinematics = match desc.kinematics {
         LAHAR_KINEMATICS_STRAIN_INCREMENT => Kinematics::StrainIncrement,
         LAHAR_KINEMATICS_VELOCITY_GRADIENT => Kinematics::VelocityGradient,
@@ -272,19 +262,10 @@ unsafe fn read_model(
         .map(|(i, p)| unsafe { read_parameter(p, place, i) })
         .collect::<Result<_>>()?;
     // SAFETY: told by the caller.
-    let states_count = states.len();
-    let mut states: Vec<StateVariable> = states
-        .into_iter()
-        .enumerate()
-        .map(|(i, s)| unsafe { read_state(s, place, i) })
-        .collect::<Result<_>>()?;
-    // SAFETY: told by the caller.
     let extensions = unsafe { Extensions::read(desc, place) }?;
-    for (state, rule) in states.iter_mut().zip(extensions.rules(states_count, place)?) {
-        state.transfer = rule;
-    }
+    // SAFETY: told by the caller.
+    let states = unsafe { read_states(&states, &extensions, place) }?;
     place.unique("parameters", parameters.iter().map(|p| p.key))?;
-    place.unique("state variables", states.iter().map(|s| s.key))?;
     Ok(Model {
         name: name.text,
         name_c: name.c,
@@ -301,6 +282,41 @@ unsafe fn read_model(
         capabilities: desc.capabilities,
         functions: read_functions(desc, &extensions, place)?,
     })
+}
+
+fn check_minor(desc: &lahar_model_desc, place: &Place<'_>) -> Result<()> {
+    if desc.required_minor <= LAHAR_PLUGIN_ABI_MINOR {
+        return Ok(());
+    }
+    Err(Error::new(
+        Status::PluginAbi,
+        format!(
+            "plugin {}: {}: it needs at least minor {} of the plugin ABI, this library speaks \
+             {LAHAR_PLUGIN_ABI_MAJOR}.{LAHAR_PLUGIN_ABI_MINOR}; use a newer lahar or an older version of the plugin",
+            place.path.display(),
+            place.at,
+            desc.required_minor
+        ),
+    ))
+}
+
+/// # Safety
+///
+/// As for [`read_plugin`].
+unsafe fn read_states(
+    states: &[&'static lahar_state_desc],
+    extensions: &Extensions,
+    place: &Place<'_>,
+) -> Result<Vec<StateVariable>> {
+    let rules = extensions.rules(states.len(), place)?;
+    let mut known = Vec::new();
+    for (i, (state, transfer)) in states.iter().zip(rules).enumerate() {
+        // SAFETY: told by the caller.
+        let state = unsafe { read_state(state, place, i) }?;
+        known.push(StateVariable { transfer, ..state });
+    }
+    place.unique("state variables", known.iter().map(|s| s.key))?;
+    Ok(known)
 }
 
 fn read_functions(
@@ -320,87 +336,6 @@ fn read_functions(
         stored_energy: extensions.energy.and_then(|t| t.stored),
         serial: None,
     })
-}
-
-/// The tables of the extensions that the engine knows.
-struct Extensions {
-    tangent: Option<&'static lahar_tangent_extension>,
-    energy: Option<&'static lahar_energy_extension>,
-    transfer: Vec<i32>,
-}
-
-impl Extensions {
-    /// # Safety
-    ///
-    /// As for [`read_plugin`].
-    unsafe fn read(desc: &lahar_model_desc, place: &Place<'_>) -> Result<Self> {
-        // SAFETY: told by the caller; a table of an id is of the type that the ABI names.
-        let (tangent, energy, transfer) = unsafe {
-            (
-                table_of::<lahar_tangent_extension>(desc, c"lahar.tangent", place)?,
-                table_of::<lahar_energy_extension>(desc, c"lahar.energy", place)?,
-                table_of::<lahar_transfer_extension>(desc, c"lahar.transfer", place)?,
-            )
-        };
-        place.ensure(tangent.is_none_or(|t| t.tangent.is_some()), || {
-            "expected a function in `lahar.tangent`, got NULL".into()
-        })?;
-        place.ensure(energy.is_none_or(|t| t.stored.is_some()), || {
-            "expected a function in `lahar.energy`, got NULL".into()
-        })?;
-        let declared = desc.capabilities & LAHAR_CAPABILITY_TANGENT != 0;
-        place.ensure(declared == tangent.is_some(), || {
-            let (says, gives) = if declared { ("", "not ") } else { ("not ", "") };
-            format!(
-                "LAHAR_CAPABILITY_TANGENT is {says}declared, but `lahar.tangent` is {gives}offered"
-            )
-        })?;
-        let transfer = match transfer {
-            None => Vec::new(),
-            Some(t) => {
-                // SAFETY: told by the caller.
-                let rules =
-                    unsafe { place.entries("transfer rules", t.rules, t.count, size_of::<i32>()) }?;
-                rules.into_iter().copied().collect()
-            }
-        };
-        Ok(Self { tangent, energy, transfer })
-    }
-
-    /// One rule per state variable.
-    fn rules(&self, states: usize, place: &Place<'_>) -> Result<Vec<Transfer>> {
-        let given = self.transfer.len();
-        place.ensure(given == 0 || given == states, || {
-            format!("expected {states} rules in `lahar.transfer`, got {given}")
-        })?;
-        let rule = |rule: &i32| match *rule {
-            LAHAR_TRANSFER_MEAN => Ok(Transfer::Mean),
-            LAHAR_TRANSFER_MAX => Ok(Transfer::Max),
-            LAHAR_TRANSFER_NEVER => Ok(Transfer::Never),
-            other => Err(place.error(format!("expected transfer rules 0 to 2, got {other}"))),
-        };
-        self.transfer.iter().map(rule).collect()
-    }
-}
-
-/// The table of an extension; None if the model does not offer it.
-///
-/// # Safety
-///
-/// As for [`read_plugin`]; the table of `id` is a `T`.
-unsafe fn table_of<T>(
-    desc: &lahar_model_desc,
-    id: &CStr,
-    place: &Place<'_>,
-) -> Result<Option<&'static T>> {
-    let Some(get_extension) = desc.get_extension else { return Ok(None) };
-    // SAFETY: the id ends with a NUL; loading is exclusive.
-    let table = unsafe { get_extension(id.as_ptr()) }.cast::<T>();
-    if table.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: told by the caller.
-    unsafe { place.inside(format!("{}, extension {id:?}", place.at)).table(table) }.map(Some)
 }
 
 fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>> {

@@ -5,6 +5,7 @@
 
 mod adapter;
 mod checked;
+mod extensions;
 mod handshake;
 mod host;
 mod load;

@@ -360,10 +360,9 @@ impl World {
 
     /// A step that was taken back, and will not be repeated.
     fn refused(&self, dt: f64, wanted: f64, why: Option<Error>) -> Error {
-        let why = why.map_or_else(
-            || Error::invalid("a material asks for a smaller step").at(on!(&self, s => s.place())),
-            |error| error,
-        );
+        let why = why.unwrap_or_else(|| {
+            Error::invalid("a material asks for a smaller step").at(on!(&self, s => s.place()))
+        });
         let text = format!(
             "the step of {dt:e} s was taken back, nothing was done: {}; take {wanted:e} s or less, or find the cause",
             why.message

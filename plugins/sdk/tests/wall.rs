@@ -128,7 +128,7 @@ fn what_a_c_caller_must_not_pass_is_refused() {
         stride: 8,
         dt: 1.0,
         time: 0.0,
-            step: -1,
+        step: -1,
         strain_increment: ptr::null(),
         velocity_gradient: ptr::null(),
         deformation_gradient: ptr::null(),
