@@ -4,7 +4,7 @@ use crate::plugin::{Library, json};
 use crate::say;
 use clap::Args;
 use lahar::material::{
-    Input, Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
+    Kinematics, Model, Parameter, ParameterKind, Plugin, Rotation, StateKind, StateVariable,
     Transfer,
 };
 use lahar_plugin_abi as abi;
@@ -136,7 +136,7 @@ impl ModelInfo {
             summary: model.summary,
             reference: model.reference,
             kinematics: kinematics(model.kinematics),
-            inputs: model.inputs.iter().map(|i| input(*i)).collect(),
+            inputs: model.inputs.iter().map(|i| i.key()).collect(),
             outputs: named(model.outputs, &OUTPUTS),
             capabilities: named(model.capabilities, &CAPABILITIES),
             extensions: extensions.iter().filter(|e| e.0).map(|e| e.1).collect(),
@@ -314,20 +314,5 @@ fn kinematics(kinematics: Kinematics) -> &'static str {
         Kinematics::VelocityGradient => "velocity_gradient",
         Kinematics::DeformationGradient => "deformation_gradient",
         Kinematics::GreenNaghdi => "green_naghdi",
-    }
-}
-
-/// The name of an input.
-pub fn input(input: Input) -> &'static str {
-    match input {
-        Input::Density => "density",
-        Input::ElementLength => "element_length",
-        Input::Temperature => "temperature",
-        Input::InternalEnergy => "internal_energy",
-        Input::PorePressure => "pore_pressure",
-        Input::PositionX => "position_x",
-        Input::PositionY => "position_y",
-        Input::PositionZ => "position_z",
-        Input::ParticleId => "particle_id",
     }
 }

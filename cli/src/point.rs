@@ -1,6 +1,5 @@
 //! Material points outside a world: what a model is given, what it gives, and how a point moves on, all as the engine does it.
 
-use crate::info::input as input_name;
 use lahar::error::Result;
 use lahar::material::{Input, Kinematics, Material, Model, Rotation, StressBatch};
 use lahar::tensor::{Mat3, rotate, rotation_between, step_rotation, symmetric, symmetric_part};
@@ -251,7 +250,7 @@ impl Given {
             text += &format!(", state = {:?}", self.state);
         }
         for (input, value) in model.inputs.iter().zip(&self.inputs) {
-            text += &format!(", {} = {value:?}", input_name(*input));
+            text += &format!(", {} = {value:?}", input.key());
         }
         text
     }

@@ -113,11 +113,36 @@ fn catch(name: &str, rule: &str, texts: &[&str]) {
     for part in texts {
         assert!(line.contains(part), "{name}: `{part}` is not in: {line}");
     }
-    let needs_input = ["loading", "objectivity", "spin", "memory", "tangent", "garbage"];
+    let needs_input =
+        ["contract", "loading", "objectivity", "spin", "memory", "tangent", "garbage"];
     if needs_input.contains(&rule) {
         let input = lines.get(first + 1).copied().unwrap_or_default();
         let known = ["dt = ", "stress = [", "density = "].iter().all(|part| input.contains(part));
         assert!(input.starts_with("     input: ") && known, "{name}: no input: {input}");
+    }
+}
+
+#[test]
+fn what_checked_mode_finds_is_a_broken_contract() {
+    let all = [
+        ("adds_to_output", "computes from what it has not written: state1 `memory`"),
+        ("bad_dt_factor", "dt_factor of point 0 of 1 is 0.0"),
+        ("changes_rounding", "changed the floating-point environment (the rounding)"),
+        ("leaves_traps_on", "changed the floating-point environment"),
+        ("hidden_state", "when called again with equal input"),
+        ("not_pointwise", "in a batch of its own"),
+        ("order_matters", "with the points in reversed order"),
+        ("unwritten_output", "leaves unwritten stress1 zx"),
+        ("writes_input", "writes its input: strain_increment"),
+        ("writes_past_n", "writes past its points: wave_speed[1]"),
+        ("writes_start_state", "writes its start state: state0 `memory`"),
+    ];
+    for few in all.chunks(4) {
+        std::thread::scope(|scope| {
+            for (name, part) in few {
+                scope.spawn(move || catch(name, "contract", &[part, "LAHAR_CHECK_PLUGINS"]));
+            }
+        });
     }
 }
 

@@ -4,7 +4,7 @@ use super::report::{Event, Report, Verdict};
 use crate::info::number;
 use crate::plugin::{Library, Values};
 use crate::point::{Given, Got, Point, Points};
-use lahar::error::Error;
+use lahar::error::{Error, Status};
 use lahar::material::{Input, Kinematics, Material, Model};
 use lahar::tensor::Mat3;
 use std::cell::OnceCell;
@@ -29,7 +29,18 @@ pub struct Probe<'a> {
     pub model: &'static Model,
     pub values: Values,
     pub material: Arc<Material>,
-    starts: OnceCell<(Vec<Start>, Vec<String>)>,
+    starts: OnceCell<Starts>,
+}
+
+/// What came of the starts that were tried.
+#[derive(Default)]
+pub struct Starts {
+    /// Those from which the model goes on.
+    pub good: Vec<Start>,
+    /// Why others are none.
+    pub reasons: Vec<String>,
+    /// A breach of the contract that the engine found on the way.
+    pub breach: Option<Verdict>,
 }
 
 /// A point from which a model can go on.
@@ -139,21 +150,24 @@ impl<'a> Probe<'a> {
     /// The points at rest from which the model goes on, at least one. A model need not bear every start: a gas has no pressure
     /// without energy, a clay no stiffness without pressure.
     pub fn starts(&self) -> Outcome<Vec<Start>> {
-        let (starts, _) = self.starts.get_or_init(|| self.find_starts());
-        match starts.is_empty() {
-            true => Err(Verdict::Skipped("there is no start, see the rule `starts`".into())),
-            false => Ok(starts.clone()),
+        let starts = self.tried_starts();
+        match (&starts.breach, starts.good.is_empty()) {
+            (Some(breach), _) => Err(breach.clone()),
+            (None, true) => {
+                Err(Verdict::Skipped("there is no start, see the rule `starts`".into()))
+            }
+            (None, false) => Ok(starts.good.clone()),
         }
     }
 
-    /// The starts, and why others are none.
-    pub fn tried_starts(&self) -> &(Vec<Start>, Vec<String>) {
+    /// All that were tried.
+    pub fn tried_starts(&self) -> &Starts {
         self.starts.get_or_init(|| self.find_starts())
     }
 
-    fn find_starts(&self) -> (Vec<Start>, Vec<String>) {
+    fn find_starts(&self) -> Starts {
         let energy = if self.model.input(Input::InternalEnergy).is_some() { ENERGY } else { 0.0 };
-        let (mut starts, mut reasons) = (Vec::new(), Vec::new());
+        let mut starts = Starts::default();
         for pressure in PRESSURES {
             let name = format!("at the pressure {} Pa", number(pressure));
             let mut point = Point::new(self.model, pressure, DENSITY, energy);
@@ -163,26 +177,32 @@ impl<'a> Probe<'a> {
                 point.deformation *= 1.0 - 1e-9 * pressure;
             }
             match self.settled(point) {
-                Ok(point) => starts.push(Start { name, point }),
-                Err(why) => reasons.push(format!("{name}: {why}")),
+                Ok(point) => starts.good.push(Start { name, point }),
+                Err(NoStart::Because(why)) => starts.reasons.push(format!("{name}: {why}")),
+                Err(NoStart::Breach(verdict)) => starts.breach = starts.breach.or(Some(verdict)),
             }
         }
-        (starts, reasons)
+        starts
     }
 
     /// The point with the first state that the model derives, after a step at rest.
-    fn settled(&self, mut point: Point) -> Result<Point, String> {
-        let text = |e: Error| e.to_string();
-        point.state = self.try_init_state(&point.at_rest(self.model)).map_err(text)?.state;
+    fn settled(&self, mut point: Point) -> Result<Point, NoStart> {
         let given = point.at_rest(self.model);
-        let got = self.try_update(&self.material, std::slice::from_ref(&given)).map_err(text)?;
+        let why = |e: Error| match e.status {
+            Status::PluginBroken => NoStart::Breach(self.broken(&e, &given)),
+            _ => NoStart::Because(e.to_string()),
+        };
+        point.state = self.try_init_state(&given).map_err(why)?.state;
+        let given = point.at_rest(self.model);
+        let got = self.try_update(&self.material, std::slice::from_ref(&given)).map_err(why)?;
         let got = &got[0];
         if !got.is_done() || !got.is_finite() {
-            return Err(format!("a step at rest gives status {} and {:?}", got.status, got.stress));
+            let text = format!("a step at rest gives status {} and {:?}", got.status, got.stress);
+            return Err(NoStart::Because(text));
         }
-        let speed = self.try_wave_speed(&given).map_err(text)?.wave_speed;
+        let speed = self.try_wave_speed(&given).map_err(why)?.wave_speed;
         if !(speed > 0.0 && speed.is_finite() && got.wave_speed > 0.0) {
-            return Err(format!("the wave speed is {speed} m/s"));
+            return Err(NoStart::Because(format!("the wave speed is {speed} m/s")));
         }
         Ok(point.moved(self.model, &Mat3::zeros(), &given, got))
     }
@@ -215,6 +235,12 @@ impl<'a> Probe<'a> {
         let got = self.try_wave_speed(&given).map_err(|e| self.broken(&e, &given))?;
         Ok(point.density * got.wave_speed.powi(2))
     }
+}
+
+/// Why a model does not go on from a point.
+enum NoStart {
+    Because(String),
+    Breach(Verdict),
 }
 
 /// `youngs_modulus = 1e7, ...`

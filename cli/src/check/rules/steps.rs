@@ -1,8 +1,9 @@
 //! Steps: at rest, at random, tiny, and with garbage.
 
-use crate::check::probe::{DT, Lcg, Outcome, Probe, distance, size};
+use crate::check::probe::{DT, Lcg, Outcome, Probe, Starts, distance, size};
 use crate::check::report::Verdict;
 use crate::point::{Given, Got, Point};
+use lahar::error::Status;
 use lahar::tensor::Mat3;
 use lahar_plugin_abi::{
     LAHAR_CAPABILITY_POINTWISE, LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR,
@@ -12,7 +13,10 @@ use std::slice::from_ref;
 
 /// The model must go on from one of the usual starts, and refuse others with a reason.
 pub fn starts(probe: &Probe<'_>) -> Outcome {
-    let (starts, reasons) = probe.tried_starts();
+    let Starts { good: starts, reasons, breach } = probe.tried_starts();
+    if let Some(breach) = breach {
+        return Err(breach.clone());
+    }
     if let Some(mute) = reasons.iter().find(|r| r.contains("without saying why")) {
         return Err(Verdict::failed(format!("{mute}; set_error must be called")));
     }
@@ -51,9 +55,9 @@ pub fn contract(probe: &Probe<'_>) -> Outcome {
         probe.update(&batch[..n.min(batch.len())])?;
     }
     for given in &batch {
-        let called = probe.try_init_state(given).err().filter(|e| (e.status as i32) < 0);
         // A state may be refused; a broken contract is not a refusal.
-        let broken = called.filter(|e| e.message.contains("breaks its contract"));
+        let refused = probe.try_init_state(given).err();
+        let broken = refused.filter(|e| e.status == Status::PluginBroken);
         let speed = probe.try_wave_speed(given).err();
         if let Some(e) = broken.or(speed) {
             return Err(probe.failed(e.to_string(), given));
