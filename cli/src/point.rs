@@ -218,8 +218,8 @@ impl Given {
         }
     }
 
-    /// The same with `strain` [-] more in the step; the deformation gradient takes it on top of the rest.
-    pub fn strained(&self, strain: &[f64; 6]) -> Self {
+    /// The same with `strain` [-] more in the step; the deformation gradient takes it on top of the rest, the density goes with it.
+    pub fn strained(&self, model: &Model, strain: &[f64; 6]) -> Self {
         let mut out = self.clone();
         for c in 0..6 {
             out.strain[c] += strain[c];
@@ -230,6 +230,9 @@ impl Given {
         }
         let f = Mat3::from_row_slice(&self.deformation);
         out.deformation = row_major(&((Mat3::identity() + more) * f));
+        if let Some(density) = model.input(Input::Density) {
+            out.inputs[density] /= growth(model, &more, 1.0);
+        }
         out
     }
 

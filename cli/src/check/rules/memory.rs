@@ -118,7 +118,8 @@ pub fn threads(probe: &Probe<'_>) -> Outcome {
         barrier.wait();
         let begin = Instant::now();
         // A busy machine may let one thread wait: both go on until both have worked.
-        while begin.elapsed() < TOGETHER || done[1 - i].load(Ordering::Relaxed) < BATCHES {
+        while begin.elapsed() < TOGETHER || done.iter().any(|d| d.load(Ordering::Relaxed) < BATCHES)
+        {
             let failed = points.update(material).is_err();
             let differs = |k: &usize| points.got(*k).bits() != alone[*k].bits();
             let off = (0..batch.len()).find(|k| failed || alone[*k].is_done() && differs(k));

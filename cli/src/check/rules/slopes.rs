@@ -17,7 +17,7 @@ fn unit(j: usize, h: f64) -> [f64; 6] {
 /// Column `j` of the derivative from both sides; None if a step fails.
 fn sides(probe: &Probe<'_>, given: &Given, j: usize) -> Outcome<Option<[[f64; 6]; 2]>> {
     let at = |h: f64| -> Outcome<Option<[f64; 6]>> {
-        let got = probe.one(&given.strained(&unit(j, h)))?;
+        let got = probe.one(&given.strained(probe.model, &unit(j, h)))?;
         Ok(got.is_done().then_some(got.stress))
     };
     let (Some(minus), Some(middle), Some(plus)) = (at(-H)?, at(0.0)?, at(H)?) else {
@@ -123,7 +123,8 @@ pub fn wave_speed(probe: &Probe<'_>) -> Outcome {
 /// The largest stiffness that waves of any direction meet [Pa], and the strain that shows it.
 fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, String)>> {
     let fluid = probe.model.gives(LAHAR_OUTPUT_DIFFUSIVITY);
-    let given = point.at_rest(probe.model);
+    // A fluid has a long step, in which what is viscous dies out.
+    let given = point.given(probe.model, &Mat3::zeros(), if fluid { 1e3 } else { DT });
     let mut best: Option<(f64, String)> = None;
     let mut consider = |stiffness: f64, how: String| {
         if stiffness > best.as_ref().map_or(0.0, |b| b.0) {
@@ -134,27 +135,34 @@ fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, S
         let sign = if h > 0.0 { "extension" } else { "compression" };
         let third = Mat3::identity() / 3.0;
         if let Some(change) = response(probe, &given, &third, h)? {
-            consider(change.trace() / 3.0, format!("isotropic {sign}"));
+            consider(change.trace() / 3.0, format!("a small isotropic {sign}"));
         }
         if fluid {
             continue;
         }
         for n in directions() {
+            let shape = |m: &Vector3<f64>| 0.5 * (m * n.transpose() + n * m.transpose());
             let mut acoustic = Mat3::zeros();
             let mut linear = true;
             for m in 0..3 {
-                let shape = Vector3::ith(m, 1.0) * n.transpose();
-                let shape = 0.5 * (shape + shape.transpose());
-                match response(probe, &given, &shape, h)? {
+                match response(probe, &given, &shape(&Vector3::ith(m, 1.0)), h)? {
                     Some(change) => acoustic.set_column(m, &(change * n)),
                     None => linear = false,
                 }
             }
-            if linear {
-                let symmetric = 0.5 * (acoustic + acoustic.transpose());
-                let values = SymmetricEigen::new(symmetric).eigenvalues;
-                let how = format!("{sign} along {:?}", [n.x, n.y, n.z]);
-                consider(values.max(), how);
+            if !linear {
+                continue;
+            }
+            // At a corner of a yield surface the response to a sum is not the sum of responses: ask for that of the fastest wave itself.
+            let waves = SymmetricEigen::new(0.5 * (acoustic + acoustic.transpose()));
+            let m = waves.eigenvectors.column(waves.eigenvalues.imax()).into_owned();
+            for m in [m, -m] {
+                if let Some(change) = response(probe, &given, &shape(&m), h)? {
+                    let along = [n, m].map(|v| [v.x, v.y, v.z].map(|x| (1e3 * x).round() / 1e3));
+                    let how =
+                        format!("a small strain along {:?} that moves {:?}", along[0], along[1]);
+                    consider(m.dot(&(change * n)), how);
+                }
             }
         }
     }
@@ -165,7 +173,7 @@ fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, S
 fn response(probe: &Probe<'_>, given: &Given, shape: &Mat3, h: f64) -> Outcome<Option<Mat3>> {
     let at = |h: f64| -> Outcome<Option<Mat3>> {
         let strain = lahar::tensor::symmetric_part(&(shape * h));
-        let got = probe.one(&given.strained(&strain))?;
+        let got = probe.one(&given.strained(probe.model, &strain))?;
         Ok((got.is_done() && got.is_finite()).then(|| symmetric(got.stress)))
     };
     let (Some(zero), Some(half), Some(whole)) = (at(0.0)?, at(0.5 * h)?, at(h)?) else {

@@ -76,7 +76,8 @@ pub fn zero_increment(probe: &Probe<'_>) -> Outcome {
     for steps in [0, 3, 20] {
         for point in probe.loaded(1, 1e-4, steps)? {
             let modulus = probe.modulus(&point)?;
-            let settled = match rate_dependent(probe, &point, modulus)? {
+            let by_rate = rate_dependent(probe, &point, modulus)?;
+            let settled = match by_rate {
                 false => point,
                 true => {
                     let rest = point.given(model, &Mat3::zeros(), DT);
@@ -104,8 +105,9 @@ pub fn zero_increment(probe: &Probe<'_>) -> Outcome {
                 );
                 return Err(probe.failed(text, &given));
             }
+            // A state variable of a law in rates may be a rate.
             let off = distance(&got.state, &given.state);
-            if off > 1e-8 * size(&given.state) + 1e-12 {
+            if (steps == 0 || !by_rate) && off > 1e-8 * size(&given.state) + 1e-12 {
                 let text = format!(
                     "a step without strain changes the state by {off:e}, to {:?}",
                     got.state
@@ -120,10 +122,15 @@ pub fn zero_increment(probe: &Probe<'_>) -> Outcome {
 /// Whether the same strain in a longer step gives another stress.
 fn rate_dependent(probe: &Probe<'_>, point: &Point, modulus: f64) -> Outcome<bool> {
     let l = Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT);
-    let fast = probe.one(&point.given(probe.model, &l, DT))?;
-    let slow = probe.one(&point.given(probe.model, &(0.01 * l), 100.0 * DT))?;
-    let allowed = 1e-9 * (size(&fast.stress) + modulus * 1e-5);
-    Ok(!(distance(&fast.stress, &slow.stress) <= allowed))
+    for l in [l, -l, Mat3::zeros()] {
+        let fast = probe.one(&point.given(probe.model, &l, DT))?;
+        let slow = probe.one(&point.given(probe.model, &(0.01 * l), 100.0 * DT))?;
+        let allowed = 1e-9 * (size(&fast.stress) + modulus * 1e-5);
+        if !(distance(&fast.stress, &slow.stress) <= allowed) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Random paths with strains of 1e-6 to 1e-2 a step.
