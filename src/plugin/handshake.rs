@@ -285,7 +285,7 @@ unsafe fn read_model(
 }
 
 fn check_minor(desc: &lahar_model_desc, place: &Place<'_>) -> Result<()> {
-    if desc.required_minor <= LAHAR_PLUGIN_ABI_MINOR {
+    if desc.required_minor.saturating_sub(LAHAR_PLUGIN_ABI_MINOR) == 0 {
         return Ok(());
     }
     Err(Error::new(

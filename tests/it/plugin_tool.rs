@@ -295,7 +295,8 @@ fn bad_input_is_refused_in_a_line() {
 #[test]
 fn values_of_the_caller_reach_the_model() {
     let path = plugin_path("newtonian");
-    let set = ["--set", "viscosity=0.5", "--set", "equation_of_state=linear"];
+    let set =
+        ["--model", "newtonian", "--set", "viscosity=0.5", "--set", "equation_of_state=linear"];
     let text = output(&[&["check", &path][..], &set].concat(), 0);
     assert!(text.contains("viscosity = 0.5, equation_of_state = 1"), "{text}");
 }

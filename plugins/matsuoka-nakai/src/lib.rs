@@ -161,8 +161,9 @@ impl Model for MatsuokaNakai {
             let end = self.step(stress0, state0, batch.strain_increment(k));
             batch.set_stress1(k, end.stress);
             batch.set_state1(k, end.state);
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-            batch.set_status(k, end.status);
+            let speed = self.wave_speed_of(density[k]);
+            batch.set_wave_speed(k, speed);
+            batch.set_status(k, if speed.is_finite() { end.status } else { PointStatus::Failed });
         }
     }
 
