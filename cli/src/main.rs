@@ -8,6 +8,7 @@ mod info;
 mod plugin;
 mod point;
 mod replay;
+mod umat_build;
 
 use clap::{Parser, Subcommand};
 use std::io::{ErrorKind, Write};
@@ -40,6 +41,8 @@ enum Command {
     Bench(bench::Arguments),
     /// Runs a point that failed in a step again, alone
     Replay(replay::Arguments),
+    /// Makes a library that can be loaded of an Abaqus UMAT or VUMAT
+    UmatBuild(umat_build::Arguments),
     /// Part of check
     #[command(hide = true)]
     CheckChild(check::child::Arguments),
@@ -52,6 +55,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::UmatBuild(arguments) => umat_build::run(&arguments),
         Command::CheckChild(arguments) => check::child::run(&arguments),
     };
     result.unwrap_or_else(|text| {
