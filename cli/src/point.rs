@@ -1,7 +1,7 @@
 //! Material points outside a world: what a model is given, what it gives, and how a point moves on, all as the engine does it.
 
 use lahar::error::Result;
-use lahar::material::{Input, Kinematics, Material, Model, Rotation, StressBatch};
+use lahar::material::{Input, Kinematics, Material, Model, Rotation, StateVariable, StressBatch};
 use lahar::tensor::{Mat3, rotate, rotation_between, step_rotation, symmetric, symmetric_part};
 use lahar_plugin_abi as abi;
 use std::sync::Arc;
@@ -95,13 +95,29 @@ fn rows(m: &Mat3) -> [[f64; 3]; 3] {
 
 /// State variables turned by `r`, those that the engine turns.
 pub fn turned_state(model: &Model, state: &[f64], r: &Mat3) -> Vec<f64> {
+    turned_where(model, state, r, |variable| variable.rotation == Rotation::Objective)
+}
+
+/// State variables in a frame that is turned by `r`. A general tensor that the engine leaves alone has a leg in the reference, as F does: it
+/// turns with the frame, though not with the material.
+pub fn framed_state(model: &Model, state: &[f64], r: &Mat3) -> Vec<f64> {
+    let general = |variable: &StateVariable| variable.components() == 9;
+    turned_where(model, state, r, |v| v.rotation == Rotation::Objective || general(v))
+}
+
+fn turned_where(
+    model: &Model,
+    state: &[f64],
+    r: &Mat3,
+    turns: impl Fn(&StateVariable) -> bool,
+) -> Vec<f64> {
     let mut out = state.to_vec();
     let mut first = 0;
     for variable in &model.states {
         let count = variable.components();
         let part = &mut out[first..first + count];
         first += count;
-        if variable.rotation != Rotation::Objective {
+        if !turns(variable) {
             continue;
         }
         match count {
@@ -213,7 +229,7 @@ impl Given {
             gradient: both(&self.gradient),
             deformation: row_major(&(r * Mat3::from_row_slice(&self.deformation))),
             stress: rotate(r, self.stress),
-            state: turned_state(model, &self.state, r),
+            state: framed_state(model, &self.state, r),
             inputs: self.inputs.clone(),
         }
     }

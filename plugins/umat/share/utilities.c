@@ -5,7 +5,6 @@
  * XIT ends the call of the UMAT, not the process: it jumps back to `lahar_umat_guard`, and the point counts as failed.
  */
 #include <math.h>
-#include <setjmp.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +12,7 @@
 
 /* --- between the adapter and this library --- */
 
-static __thread jmp_buf *way_back;
+static __thread void **way_back; /* of the compiler's own setjmp, which saves the least */
 static void (*log_text)(int level, const char *text);
 
 void lahar_umat_set_log(void (*log)(int, const char *)) { log_text = log; }
@@ -21,21 +20,22 @@ void lahar_umat_set_log(void (*log)(int, const char *)) { log_text = log; }
 /* Runs body(data). Returns 0, or 1 if XIT or the like ended it. */
 int lahar_umat_guard(void (*body)(void *), void *data)
 {
-    jmp_buf here;
-    jmp_buf *outer = way_back;
-    way_back = &here;
-    int ended = _setjmp(here);
-    if (!ended) {
-        body(data);
+    void *here[5];
+    void **volatile outer = way_back;
+    way_back = here;
+    if (__builtin_setjmp(here)) {
+        way_back = outer;
+        return 1;
     }
+    body(data);
     way_back = outer;
-    return ended != 0;
+    return 0;
 }
 
 static void leave(void)
 {
     if (way_back) {
-        longjmp(*way_back, 1);
+        __builtin_longjmp(way_back, 1);
     }
 }
 

@@ -32,10 +32,11 @@ pub const INTERNAL_ENERGY: usize = 7;
 /// Position in the engine's order of component c of a symmetric tensor in the order 11, 22, 33, 12, 13, 23.
 pub const ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
-/// One `STATEV`: its component among the engine's, and how many times larger it is there.
+/// One `STATEV`: its component among the engine's, how many times larger it is there, and the inverse, which is exact.
 pub struct Place {
     pub component: usize,
     pub factor: f64,
+    pub inverse: f64,
 }
 
 /// A lower bound of the modulus of waves [Pa].
@@ -222,7 +223,7 @@ impl States {
                 let n = if let Some(CountOrList::Count(n)) = count { *n } else { USUAL_STATES };
                 for i in 1..=n {
                     let at = self.push(&format!("statev_{i}"), "-", "value of STATEV", 0, 0);
-                    self.places.push(Place { component: at, factor: 1.0 });
+                    self.places.push(Place { component: at, factor: 1.0, inverse: 1.0 });
                 }
                 return;
             }
@@ -251,7 +252,7 @@ impl States {
                 };
                 let engineering = state.shear == Shear::Engineering && c >= 3;
                 let factor = if engineering { 2.0 } else { 1.0 };
-                self.places.push(Place { component: first + at, factor });
+                self.places.push(Place { component: first + at, factor, inverse: 1.0 / factor });
             }
         }
     }

@@ -30,7 +30,7 @@ impl Drop for Environment {
     }
 }
 
-/// The control bits of vector arithmetic, to be looked at after each call: rounding, traps, flushing to zero.
+/// The control bits of vector arithmetic, to be looked at between calls: rounding, traps, flushing to zero.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub fn control() -> u32 {

@@ -88,7 +88,7 @@ pub fn init_state(instance: &Instance, p: &mut Points<'_>) -> Result<(), String>
             if !value.is_finite() {
                 return Err(format!("SDVINI gave {value} at particle {id}"));
             }
-            p.state1[place.component * p.stride + k] = value / place.factor;
+            p.state1[place.component * p.stride + k] = value * place.inverse;
         }
     }
     Ok(())

@@ -32,7 +32,7 @@ macro_rules! umat_type {
 }
 
 /// STATEV(NSTATV + 1) and what follows: a routine that writes there was built for more state variables.
-pub const BEHIND: usize = 8;
+pub const BEHIND: usize = 4;
 /// What stands there.
 pub const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
 
@@ -82,7 +82,7 @@ struct Arguments {
     kinc: i32,
     statev: Vec<f64>,
     props: Vec<f64>,
-    /// How vector arithmetic is to be after each call.
+    /// How vector arithmetic is to be after every eight calls.
     control: u32,
 }
 
@@ -136,6 +136,8 @@ struct Start {
     rotation: [Lane; 9],
     old: [Lane; 9],
     new: [Lane; 9],
+    /// 0, or not a number where strain or deformation are not.
+    doubt: Lane,
 }
 
 /// What a call left, before its numbers are looked at.
@@ -194,6 +196,7 @@ impl Start {
         rotation: [[0.0; LANES]; 9],
         old: [[0.0; LANES]; 9],
         new: [[0.0; LANES]; 9],
+        doubt: [0.0; LANES],
     };
 
     /// The points from `k` on: the start stress is turned with the material, as Abaqus does before it calls.
@@ -212,6 +215,7 @@ impl Start {
             self.stress = stress;
             self.rotation = IDENTITY.map(|x| [x; LANES]);
             self.new = self.old;
+            self.look();
             return;
         }
         let mut l = zero();
@@ -221,6 +225,18 @@ impl Start {
         lanes(&mut self.stress, |k| rotated(lane(r, k), lane(&stress, k)));
         lanes(&mut self.increment, |k| strain_increment(lane(&l, k), p.dt));
         lanes(&mut self.new, |k| deformed(lane(f, k), lane(&l, k), p.dt));
+        self.look();
+    }
+
+    /// What is not finite in F or strain stays so in these sums.
+    #[inline(always)]
+    fn look(&mut self) {
+        self.doubt = [0.0; LANES];
+        for component in self.new.iter().chain(&self.strain) {
+            for i in 0..LANES {
+                self.doubt[i] += 0.0 * component[i];
+            }
+        }
     }
 }
 
@@ -279,12 +295,15 @@ fn eight(
             }
         }
     }
+    // Not after each call: to read the bits is to wait for all arithmetic before.
+    fpenv::set_back(a.control);
     let mut density = [[1.0; LANES]];
     p.load_all(p.inputs[DENSITY], 0, k, &mut density);
     let mut moduli = [0.0; LANES];
     for (i, outcome) in outcomes[..m].iter().enumerate() {
         let (at, modulus) = (k + i, wave_modulus(adapted.ntens, &a.ddsdde[i]));
-        let done = outcome.finite && outcome.pnewdt > 0.0 && modulus < f64::INFINITY;
+        let sane = start.doubt[i] == 0.0 && density[0][i] > 0.0 && density[0][i] < f64::INFINITY;
+        let done = sane && outcome.finite && outcome.pnewdt > 0.0 && modulus < f64::INFINITY;
         if outcome.left || !done {
             left = left.or(outcome.left.then_some(p.inputs[PARTICLE_ID][at]));
             fail(adapted, p, at, update);
@@ -427,18 +446,14 @@ impl Arguments {
                 }
             }
         };
-        fpenv::set_back(self.control);
-        let (ntens, nstatv) = (instance.adapted.ntens, instance.adapted.states.len());
-        let behind = &self.statev[nstatv..];
-        if behind.iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
+        let (states, behind) = self.statev.split_at(instance.adapted.states.len());
+        if behind.iter().fold(0, |all, x| all | (x.to_bits() ^ UNTOUCHED.to_bits())) != 0 {
             return Err(self.wrote_behind(instance));
         }
         // By their bits: arithmetic on the results would wait for the routine.
-        let mut finite = true;
-        for x in self.stress[..ntens].iter().chain(&self.statev[..nstatv]) {
-            const INFINITE: u64 = f64::INFINITY.to_bits();
-            finite &= x.to_bits() & INFINITE != INFINITE;
-        }
+        const INFINITE: u64 = f64::INFINITY.to_bits();
+        let finite = |all, x: &f64| all & (x.to_bits() & INFINITE != INFINITE);
+        let finite = self.stress.iter().fold(true, finite) & states.iter().fold(true, finite);
         Ok(Outcome { left: left != 0, finite, pnewdt: self.pnewdt })
     }
 
@@ -457,7 +472,7 @@ impl Arguments {
     #[inline(always)]
     fn keep_state(&mut self, adapted: &Adapted, p: &mut Points<'_>, at: usize) {
         for (value, place) in self.statev.iter().zip(&adapted.states) {
-            p.state1[place.component * p.stride + at] = value / place.factor;
+            p.state1[place.component * p.stride + at] = value * place.inverse;
         }
         for c in &adapted.unused {
             p.state1[c * p.stride + at] = p.state0[c * p.stride + at];

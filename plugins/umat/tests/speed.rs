@@ -89,6 +89,6 @@ fn the_adapter_costs_little_beside_the_umat() {
     println!(
         "through the adapter {best:.1} ns, alone {alone:.1} ns, beside {beside:.1} ns per point"
     );
-    // The gate is 60 ns; a machine that is busy, or slower, has twice that.
+    // The target is 60 ns; a machine that is busy, or slower, may take twice that.
     assert!(beside < 120.0, "{beside:.1} ns per point beside the {alone:.1} of the UMAT");
 }

@@ -2,7 +2,7 @@
 
 use crate::check::probe::{DT, Lcg, Outcome, Probe, distance, size};
 use crate::check::report::Verdict;
-use crate::point::turned_state;
+use crate::point::framed_state;
 use lahar::material::{Kinematics, Rotation};
 use lahar::tensor::{Mat3, rotate, step_rotation};
 use nalgebra::{Rotation3, Vector3};
@@ -52,7 +52,7 @@ pub fn objectivity(probe: &Probe<'_>) -> Outcome {
                         );
                         return Err(probe.failed(text, &turned));
                     }
-                    let expected = turned_state(model, &got.state, &r);
+                    let expected = framed_state(model, &got.state, &r);
                     if let Some(c) = first_off(&expected, &there.state, &given.state) {
                         let text = format!(
                             "in a turned frame the state variable {} is {:?} and not {:?}; declare \
