@@ -1,7 +1,7 @@
 //! Material points outside a world: what a model is given, what it gives, and how a point moves on, all as the engine does it.
 
 use lahar::error::Result;
-use lahar::material::{Input, Kinematics, Material, Model, Rotation, StateVariable, StressBatch};
+use lahar::material::{Input, Kinematics, Material, Model, Rotation, StressBatch};
 use lahar::tensor::{Mat3, rotate, rotation_between, step_rotation, symmetric, symmetric_part};
 use lahar_plugin_abi as abi;
 use std::sync::Arc;
@@ -95,29 +95,13 @@ fn rows(m: &Mat3) -> [[f64; 3]; 3] {
 
 /// State variables turned by `r`, those that the engine turns.
 pub fn turned_state(model: &Model, state: &[f64], r: &Mat3) -> Vec<f64> {
-    turned_where(model, state, r, |variable| variable.rotation == Rotation::Objective)
-}
-
-/// State variables in a frame that is turned by `r`. A general tensor that the engine leaves alone has a leg in the reference, as F does: it
-/// turns with the frame, though not with the material.
-pub fn framed_state(model: &Model, state: &[f64], r: &Mat3) -> Vec<f64> {
-    let general = |variable: &StateVariable| variable.components() == 9;
-    turned_where(model, state, r, |v| v.rotation == Rotation::Objective || general(v))
-}
-
-fn turned_where(
-    model: &Model,
-    state: &[f64],
-    r: &Mat3,
-    turns: impl Fn(&StateVariable) -> bool,
-) -> Vec<f64> {
     let mut out = state.to_vec();
     let mut first = 0;
     for variable in &model.states {
         let count = variable.components();
         let part = &mut out[first..first + count];
         first += count;
-        if !turns(variable) {
+        if variable.rotation != Rotation::Objective {
             continue;
         }
         match count {
@@ -220,17 +204,13 @@ pub fn work(start: &[f64; 6], end: &[f64; 6], strain: &[f64; 6]) -> f64 {
 }
 
 impl Given {
-    /// The same seen in a frame that is turned by `r`, which the engine's part in it follows.
+    /// The same of a material that was turned by `r`, and the engine turned stress and state with it.
     pub fn turned(&self, model: &Model, r: &Mat3) -> Self {
-        let both = |m: &[f64; 9]| row_major(&(r * Mat3::from_row_slice(m) * r.transpose()));
         Self {
-            dt: self.dt,
             strain: rotate(r, self.strain),
-            gradient: both(&self.gradient),
-            deformation: row_major(&(r * Mat3::from_row_slice(&self.deformation))),
             stress: rotate(r, self.stress),
-            state: framed_state(model, &self.state, r),
-            inputs: self.inputs.clone(),
+            state: turned_state(model, &self.state, r),
+            ..self.clone()
         }
     }
 

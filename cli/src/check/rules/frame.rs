@@ -2,8 +2,8 @@
 
 use crate::check::probe::{DT, Lcg, Outcome, Probe, distance, size};
 use crate::check::report::Verdict;
-use crate::point::framed_state;
-use lahar::material::{Kinematics, Rotation};
+use crate::point::{Given, Point, turned_state};
+use lahar::material::{Rotation, StateVariable};
 use lahar::tensor::{Mat3, rotate, step_rotation};
 use nalgebra::{Rotation3, Vector3};
 
@@ -22,8 +22,16 @@ fn frames() -> [Mat3; 3] {
     ]
 }
 
-/// The same step seen in a turned frame must give the same stress turned.
+/// A material that was turned, and is then strained in the turned directions, must give the same stress, turned.
 pub fn objectivity(probe: &Probe<'_>) -> Outcome {
+    match probe.model.kinematics.takes_strain_increment() {
+        true => turned_by_the_engine(probe),
+        false => turned_by_the_model(probe),
+    }
+}
+
+/// The engine has turned stress and state before the model sees them.
+fn turned_by_the_engine(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     let mut lcg = Lcg::new(11);
     let mut count = 0;
@@ -52,7 +60,7 @@ pub fn objectivity(probe: &Probe<'_>) -> Outcome {
                         );
                         return Err(probe.failed(text, &turned));
                     }
-                    let expected = framed_state(model, &got.state, &r);
+                    let expected = turned_state(model, &got.state, &r);
                     if let Some(c) = first_off(&expected, &there.state, &given.state) {
                         let text = format!(
                             "in a turned frame the state variable {} is {:?} and not {:?}; declare \
@@ -74,8 +82,7 @@ pub fn objectivity(probe: &Probe<'_>) -> Outcome {
 }
 
 fn hint(probe: &Probe<'_>) -> &'static str {
-    let still =
-        |s: &lahar::material::StateVariable| s.components() > 1 && s.rotation == Rotation::None;
+    let still = |s: &StateVariable| s.components() > 1 && s.rotation == Rotation::None;
     match probe.model.states.iter().any(still) {
         true => {
             "; a vector or tensor among the state variables does not turn: LAHAR_ROTATION_OBJECTIVE?"
@@ -102,14 +109,93 @@ fn state_name(probe: &Probe<'_>, component: usize) -> String {
     component.to_string()
 }
 
+/// Steps of the spin that turns a material before it is strained, and their angle: together half a right angle or so.
+const SPINS: usize = 200;
+const SPIN: f64 = 4e-3;
+
+/// The model sees the material turn, step by step, before it is strained; beside it one that rests for as long.
+fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
+    let model = probe.model;
+    // A rotation of first order in each step errs by half the square of the angle.
+    let accuracy = SPINS as f64 * SPIN * SPIN;
+    let w = skew(SPIN / DT);
+    let r = step_rotation(&w, SPINS as f64 * DT);
+    let mut lcg = Lcg::new(12);
+    let mut count = 0;
+    for steps in [0, 15] {
+        for point in probe.loaded(5, 1e-4, steps)? {
+            let modulus = probe.modulus(&point)?;
+            let rested = spun(probe, &point, &Mat3::zeros())?;
+            let (Some(rested), Some(turned)) = (rested, spun(probe, &point, &w)?) else { continue };
+            for scale in [1e-6, 1e-4, 1e-3] {
+                let l = lcg.gradient(scale / DT);
+                let got = probe.one(&rested.given(model, &l, DT))?;
+                let given = turned.given(model, &(r * l * r.transpose()), DT);
+                let there = probe.one(&given)?;
+                if !got.is_done() || !there.is_done() {
+                    continue;
+                }
+                count += 1;
+                let expected = rotate(&r, got.stress);
+                let allowed = accuracy * (size(&expected) + modulus * scale);
+                if distance(&expected, &there.stress) > allowed {
+                    let text = format!(
+                        "a material that was turned by {:.1} rad in {SPINS} steps and then strained has the stress {:?}, where the \
+                         turned stress of one that was not is {expected:?}{}",
+                        SPIN * SPINS as f64,
+                        there.stress,
+                        hint(probe)
+                    );
+                    return Err(probe.failed(text, &given));
+                }
+            }
+        }
+    }
+    match count {
+        0 => Ok(Verdict::Skipped("no step succeeded before and after a turn".into())),
+        _ => Ok(Verdict::Ok(format!("{count} steps of turned materials"))),
+    }
+}
+
+/// A spin by `rate` [rad/s] about an axis that is none of the coordinates'.
+fn skew(rate: f64) -> Mat3 {
+    let (x, y, z) = (2.0 / 3.0 * rate, 1.0 / 3.0 * rate, 2.0 / 3.0 * rate);
+    Mat3::new(0.0, -z, y, z, 0.0, -x, -y, x, 0.0)
+}
+
+/// What the model is given of a rigid turn: (I + W dt) F would swell.
+fn turning(probe: &Probe<'_>, point: &Point, w: &Mat3) -> Given {
+    let mut given = point.given(probe.model, w, DT);
+    let f = step_rotation(w, DT) * point.deformation;
+    given.deformation = std::array::from_fn(|c| f[(c / 3, c % 3)]);
+    given.inputs = point.at_rest(probe.model).inputs;
+    given
+}
+
+/// The point after so many steps of spin; None if one fails.
+fn spun(probe: &Probe<'_>, point: &Point, w: &Mat3) -> Outcome<Option<Point>> {
+    let mut point = point.clone();
+    for _ in 0..SPINS {
+        let given = turning(probe, &point, w);
+        let got = probe.one(&given)?;
+        if !got.is_done() || !got.is_finite() {
+            return Ok(None);
+        }
+        let density = point.density;
+        point = point.moved(probe.model, w, &given, &got);
+        point.density = density;
+    }
+    Ok(Some(point))
+}
+
 /// A step of rigid spin must turn the stress with the material. Where the engine turns it, the model sees nothing of the spin.
 pub fn spin(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     if model.kinematics.takes_strain_increment() {
         return Ok(Verdict::Skipped("the engine turns stress and state for the model".into()));
     }
-    let w = Mat3::new(0.0, -0.6, 0.3, 0.6, 0.0, -0.7, -0.3, 0.7, 0.0) * (0.01 / DT);
-    let angle = 0.01_f64;
+    let angle = 0.01;
+    let w = skew(angle / DT);
     let mut count = 0;
     for point in probe.loaded(6, 1e-4, 15)? {
         let rest = point.at_rest(model);
@@ -119,11 +205,7 @@ pub fn spin(probe: &Probe<'_>) -> Outcome {
         }
         let point = point.moved(model, &Mat3::zeros(), &rest, &got);
         let r = step_rotation(&w, DT);
-        let mut given = point.given(model, &w, DT);
-        if model.kinematics == Kinematics::DeformationGradient {
-            let f = r * point.deformation; // a rigid turn, not (I + W dt) F, which swells
-            given.deformation = std::array::from_fn(|c| f[(c / 3, c % 3)]);
-        }
+        let given = turning(probe, &point, &w);
         let got = probe.one(&given)?;
         if !got.is_done() {
             continue;
