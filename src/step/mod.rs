@@ -66,6 +66,7 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits, Box
         StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
+    world.unreliable = outcome.unreliable();
     outcome.limits(dt)
 }
 

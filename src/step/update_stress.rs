@@ -2,7 +2,7 @@
 //!
 //! The work of the step goes into the strain energy, U += V ½ (σ0 + σ1) : Δε, unless the model gives its own energy.
 
-use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP};
+use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP, LAHAR_POINT_UNRELIABLE};
 
 use crate::error::{Error, Place, Status};
 use crate::material::{Capsule, Occasion, StressBatch};
@@ -32,11 +32,23 @@ pub struct Outcome {
     /// Smallest factor on the time step that a point wants [–]; infinity if none wants one below 1.
     factor: f64,
     failure: Option<Box<Failure>>,
+    unreliable: Option<Unreliable>,
+}
+
+/// Points that a model answered for with less accuracy than it promises.
+#[derive(Clone, Copy, Debug)]
+pub struct Unreliable {
+    /// How many.
+    pub points: usize,
+    /// Body of the first.
+    pub body: i64,
+    /// Particle of the first.
+    pub particle: i64,
 }
 
 impl Default for Outcome {
     fn default() -> Self {
-        Self { limits: Limits::default(), factor: f64::INFINITY, failure: None }
+        Self { limits: Limits::default(), factor: f64::INFINITY, failure: None, unreliable: None }
     }
 }
 
@@ -47,7 +59,16 @@ impl Outcome {
             limits: self.limits.merge(other.limits),
             factor: self.factor.min(other.factor),
             failure: self.failure.or(other.failure),
+            unreliable: match (self.unreliable, other.unreliable) {
+                (Some(a), Some(b)) => Some(Unreliable { points: a.points + b.points, ..a }),
+                (a, b) => a.or(b),
+            },
         }
+    }
+
+    /// The points that are less accurate than promised.
+    pub fn unreliable(&self) -> Option<Unreliable> {
+        self.unreliable
     }
 
     /// The limits of the step after one of length `dt` [s], or the failure.
@@ -79,7 +100,7 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
     piece.lap(ChunkStage::Stressed);
     let limits = Limits { speed, diffusivity, ..Limits::default() };
-    Outcome { limits, factor, failure: None }
+    Outcome { limits, factor, failure: None, unreliable: unreliable(piece) }
 }
 
 fn failed_point<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Option<Box<Failure>> {
@@ -89,6 +110,16 @@ fn failed_point<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Option<Box
     }
     let k = status.iter().position(|s| *s >= LAHAR_POINT_FAILED).unwrap_or(0);
     Some(fault(piece, (k, dt), Status::MaterialFailed, "could not update"))
+}
+
+fn unreliable<const D: usize>(piece: &Piece<'_, '_, D>) -> Option<Unreliable> {
+    let status = &piece.scratch.status[..piece.chunk.len];
+    let points = status.iter().fold(0, |n, s| n + usize::from(*s == LAHAR_POINT_UNRELIABLE));
+    if points == 0 {
+        return None;
+    }
+    let k = status.iter().position(|s| *s == LAHAR_POINT_UNRELIABLE).unwrap_or(0);
+    Some(Unreliable { points, body: piece.body, particle: piece.ids[piece.chunk.first + k] })
 }
 
 /// Smallest factor on the time step that a point of the chunk wants; infinity if none does.

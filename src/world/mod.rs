@@ -33,7 +33,7 @@ use crate::step::particles_to_grid::particles_to_grid;
 use crate::step::retry::back_to_start;
 use crate::step::time_step::{Limits, limits_of_state};
 use crate::step::update_grid::update_grid;
-use crate::step::update_stress::Failure;
+use crate::step::update_stress::{Failure, Unreliable};
 
 use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
@@ -52,6 +52,7 @@ pub struct World {
     last_dt: f64,
     host_wrote: bool,
     poisoned: bool,
+    told_unreliable: bool,
 }
 
 pub(crate) enum Inner {
@@ -92,6 +93,7 @@ impl World {
             last_dt: 0.0,
             host_wrote: false,
             poisoned: false,
+            told_unreliable: false,
         })
     }
 
@@ -306,6 +308,7 @@ impl World {
                         s.limits = Some(limits);
                         s.step_count += 1;
                     });
+                    self.tell_of_unreliable_points();
                     self.last_dt = dt;
                     return Ok(dt);
                 }
@@ -347,6 +350,24 @@ impl World {
                 failure
             })
         })
+    }
+
+    /// Says once in a world's life that a model answered with less accuracy than it promises.
+    fn tell_of_unreliable_points(&mut self) {
+        let Some(found) = on!(&self, s => s.unreliable).filter(|_| !self.told_unreliable) else {
+            return;
+        };
+        self.told_unreliable = true;
+        on!(&self, s => {
+            let Unreliable { points, body, particle } = found;
+            let model = s.body(body).map_or("?", |b| b.material.model().name);
+            let text = format!(
+                "in step {} the model `{model}` answered for {points} points with less accuracy than it promises, first for particle \
+                 {particle} of body {body}; smaller steps may help; this is told once",
+                s.step_count - 1
+            );
+            s.context.log(LogLevel::Warning, &text);
+        });
     }
 
     /// The error of a failure that counts; the call that failed is kept if the host asked for that.

@@ -17,7 +17,7 @@ use crate::step::filter_velocities::Filtered;
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
 use crate::step::time_step::Limits;
-use crate::step::update_stress::Outcome;
+use crate::step::update_stress::{Outcome, Unreliable};
 use crate::transfer::TransferKind;
 
 use super::conditions::Conditions;
@@ -187,6 +187,8 @@ pub struct State<const D: usize> {
     pub rescan: bool,
     /// Whether steps use the threads of the context.
     pub parallel: bool,
+    /// What the last step's stress updates said of their accuracy.
+    pub unreliable: Option<Unreliable>,
     /// Limits of the next time step; None if the host changed something since they were found.
     pub limits: Option<Limits>,
     /// Time [s].
@@ -219,6 +221,7 @@ impl<const D: usize> State<D> {
             regroup: true,
             rescan: true,
             parallel: false,
+            unreliable: None,
             limits: None,
             time: 0.0,
             step_count: 0,

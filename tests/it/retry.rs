@@ -8,12 +8,16 @@ use lahar::material::Material;
 use lahar::step::StepOrder;
 use lahar::world::World;
 use lahar::world::options::Options;
+use std::sync::{Arc, Mutex};
 
 /// A block that the model of a bad plugin fills, in a world that lets steps be repeated. The stable step is about 4e-3 s.
 fn block(plugin: &str, retries: i32, order: StepOrder) -> World {
-    let context = Context::new(Some(2)).unwrap();
+    block_in(&Context::new(Some(2)).unwrap(), plugin, retries, order)
+}
+
+fn block_in(context: &Arc<Context>, plugin: &str, retries: i32, order: StepOrder) -> World {
     context.load_plugin(&bad_plugin(plugin)).unwrap();
-    let material = Material::new(&context, "minimal", &[]).unwrap();
+    let material = Material::new(context, "minimal", &[]).unwrap();
     let options = Options {
         dimension: 2,
         spacing: 0.1,
@@ -22,7 +26,7 @@ fn block(plugin: &str, retries: i32, order: StepOrder) -> World {
         order,
         ..Options::default()
     };
-    let mut world = world(&context, &options);
+    let mut world = world(context, &options);
     fill(&mut world, &material, &a_box([0.0; 3], [4.0, 4.0, 0.0]), 1000.0, [0.1, 0.0, 0.0]);
     world
 }
@@ -111,6 +115,23 @@ fn without_retries_a_wish_shortens_the_next_step_and_a_failure_poisons_the_world
     assert_eq!(error.status, Status::MaterialFailed);
     assert!(error.message.contains("the world is poisoned"), "{error}");
     assert!(world.is_poisoned());
+}
+
+#[test]
+fn points_that_are_less_accurate_than_promised_are_told_of_once() {
+    let context = Context::new(Some(2)).unwrap();
+    let mut world = block_in(&context, "unreliable", 0, StepOrder::Musl);
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    let sink = Arc::clone(&lines);
+    context.set_log(Some(Arc::new(move |l, t| sink.lock().unwrap().push((l, t.to_string())))), 3);
+    for _ in 0..4 {
+        world.step(None).unwrap();
+    }
+    context.flush_log();
+    let lines = lines.lock().unwrap();
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    let expected = "in step 2 the model `minimal` answered for 6400 points with less accuracy than it promises, first for particle";
+    assert!(lines[0].0 == 1 && lines[0].1.contains(expected), "{lines:?}");
 }
 
 #[test]

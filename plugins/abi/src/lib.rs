@@ -117,7 +117,7 @@ pub const LAHAR_TRANSFER_NEVER: i32 = 2;
 
 /// The point is updated.
 pub const LAHAR_POINT_OK: i32 = 0;
-/// The point is updated, but the result is less accurate than promised.
+/// The point is updated, but the result is less accurate than promised; the engine logs the first of them.
 pub const LAHAR_POINT_UNRELIABLE: i32 = 1;
 /// The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
 pub const LAHAR_POINT_SMALLER_STEP: i32 = 2;
