@@ -376,7 +376,16 @@ fn model(
     let inputs = inputs(sidecar, routine);
     let energy = if sidecar.energy { LAHAR_OUTPUT_ENERGY } else { 0 };
     let factor = if routine == Routine::Umat { LAHAR_OUTPUT_DT_FACTOR } else { 0 };
-    let safe = sidecar.threads != Threads::Serial;
+    // A routine that keeps nothing between calls has points that do not know of each other.
+    let threads = match sidecar.threads {
+        Threads::Serial => 0,
+        Threads::Copies => LAHAR_CAPABILITY_THREAD_SAFE,
+        Threads::Safe => {
+            LAHAR_CAPABILITY_THREAD_SAFE
+                | LAHAR_CAPABILITY_POINTWISE
+                | LAHAR_CAPABILITY_DETERMINISTIC
+        }
+    };
     let has_sdvini = adapted.library.has_sdvini();
     Box::leak(Box::new(lahar_model_desc {
         struct_size: size_of::<lahar_model_desc>() as u32,
@@ -394,9 +403,7 @@ fn model(
         required_minor: 0,
         inputs: leak(inputs),
         outputs: LAHAR_OUTPUT_WAVE_SPEED | LAHAR_OUTPUT_STATUS | factor | energy,
-        capabilities: LAHAR_CAPABILITY_MAY_STOP
-            | LAHAR_CAPABILITY_MAY_PRINT
-            | if safe { LAHAR_CAPABILITY_THREAD_SAFE } else { 0 },
+        capabilities: LAHAR_CAPABILITY_MAY_STOP | LAHAR_CAPABILITY_MAY_PRINT | threads,
         create: Some(calls::CREATE[slot]),
         destroy: Some(calls::destroy),
         check: None,

@@ -141,19 +141,31 @@ fn series(t: f64) -> [f64; 2] {
     ]
 }
 
-/// R of F = R U, det F > 0: Newton's iteration with scaling (N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174,
-/// doi:10.1137/0907079). Stretches up to 25 reach round-off in seven steps.
+/// R of F = R U of eight deformation gradients, det F > 0: Newton's iteration with scaling (N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986)
+/// 1160–1174, doi:10.1137/0907079). Stretches up to 25 reach round-off in seven steps.
 #[inline(always)]
-pub fn polar_rotation(f: [f64; 9]) -> [f64; 9] {
-    let mut x = f;
+pub fn polar_rotations(f: &[Lane; 9], x: &mut [Lane; 9]) {
+    *x = *f;
     for step in 0..8 {
-        let cofactor = cofactors(x);
-        let inverse = 1.0 / (x[0] * cofactor[0] + x[1] * cofactor[1] + x[2] * cofactor[2]);
-        let y: [f64; 9] = components(|c| cofactor[c] * inverse); // X⁻ᵀ
-        let scale = if step < 5 { (squares(y) / squares(x)).sqrt().sqrt() } else { 1.0 };
-        x = components(|c| 0.5 * (scale * x[c] + y[c] / scale));
+        let before = *x;
+        for k in 0..LANES {
+            let next = towards_rotation(lane(&before, k), step < 5);
+            for c in 0..9 {
+                x[c][k] = next[c];
+            }
+        }
     }
-    x
+}
+
+/// (g X + X⁻ᵀ / g) / 2, with g = √(|X⁻¹| / |X|) or 1.
+#[inline(always)]
+fn towards_rotation(x: [f64; 9], scaled: bool) -> [f64; 9] {
+    let cofactor = cofactors(x);
+    let inverse = 1.0 / (x[0] * cofactor[0] + x[1] * cofactor[1] + x[2] * cofactor[2]);
+    let y: [f64; 9] = components(|c| cofactor[c] * inverse); // X⁻ᵀ
+    let g = if scaled { (squares(y) / squares(x)).sqrt().sqrt() } else { 1.0 };
+    let (g, h) = (0.5 * g, 0.5 / g);
+    components(|c| g * x[c] + h * y[c])
 }
 
 /// The rotation vector of a rotation by less than a right angle: components 32, 13, 21 of its logarithm.
@@ -211,7 +223,10 @@ mod tests {
         assert!(close(&product(r, transposed(r)), &IDENTITY, 1e-15));
         assert!(close(&rotation_vector(r), &[0.2, 0.3, 0.5], 1e-14));
         let stretch = [1.5, 0.2, 0.0, 0.2, 0.8, -0.1, 0.0, -0.1, 1.1];
-        assert!(close(&polar_rotation(product(r, stretch)), &r, 1e-14));
+        let f = product(r, stretch).map(|x| [x; LANES]);
+        let mut found = zero();
+        polar_rotations(&f, &mut found);
+        assert!(close(&lane(&found, 5), &r, 1e-14));
     }
 
     #[test]

@@ -214,7 +214,7 @@ fn nearest(message: &str) -> Option<String> {
     let received = quoted.next().filter(|_| unknown)?;
     let close = |candidate: &&str| strsim::jaro_winkler(received, candidate);
     let best = quoted.max_by(|a, b| close(a).total_cmp(&close(b)))?;
-    (close(&best) > 0.7).then(|| best.to_string())
+    (close(&best) > 0.8).then(|| best.to_string())
 }
 
 impl Sidecar {

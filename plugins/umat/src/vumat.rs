@@ -10,7 +10,7 @@ use crate::describe::{
 use crate::fpenv;
 use crate::host::log;
 use crate::kinematics::{
-    IDENTITY, LANES, Lane, components, deformed, lane, lanes, polar_rotation, product, rotated,
+    IDENTITY, LANES, Lane, components, deformed, lane, lanes, polar_rotations, product, rotated,
     rotation_vector, spin, strain_increment, transposed, zero,
 };
 use crate::library::Functions;
@@ -343,8 +343,8 @@ impl Block {
             let (mut old, mut new, mut r0, mut r1) = (zero(), zero(), zero(), zero());
             lanes(&mut old, |k| components(|c| h[c][k] + IDENTITY[c]));
             lanes(&mut new, |k| deformed(lane(&old, k), lane(&l, k), p.dt));
-            lanes(&mut r0, |k| polar_rotation(lane(&old, k)));
-            lanes(&mut r1, |k| polar_rotation(lane(&new, k)));
+            polar_rotations(&old, &mut r0);
+            polar_rotations(&new, &mut r1);
             for i in 0..LANES.min(m - k) {
                 let (k, back0, back1) = (k + i, transposed(lane(&r0, i)), transposed(lane(&r1, i)));
                 let l = lane(&l, i);
