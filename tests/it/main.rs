@@ -30,5 +30,6 @@ mod retry;
 mod sparse_grid;
 mod templates;
 mod tidy;
+mod umat;
 mod vtp;
 mod write_a_material;
