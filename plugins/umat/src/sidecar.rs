@@ -338,6 +338,22 @@ mod tests {
     }
 
     #[test]
+    fn the_example_of_the_manual_is_a_sidecar() {
+        let manual = include_str!("../README.md");
+        let (_, rest) = manual.split_once("```json\n").expect("an example");
+        let (example, _) = rest.split_once("```").expect("its end");
+        let sidecar = parse(example).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(sidecar.model.as_deref(), Some("my_soil"));
+        let Some(CountOrList::List(states)) = sidecar.states else { panic!("no list of states") };
+        assert_eq!((states[1].kind, states[1].rotation), (Kind::Symmetric, Rotation::Objective));
+        // Every key has its row.
+        let message = error("{\"zzz\": 1}");
+        for key in message.split('`').skip(3).step_by(2) {
+            assert!(manual.contains(&format!("`{key}`")), "the manual lacks `{key}`");
+        }
+    }
+
+    #[test]
     fn bad_json_tells_the_line() {
         let text = error("{\n \"states\": 3,\n");
         assert!(text.contains("line 3"), "{text}");

@@ -144,6 +144,14 @@ fn the_arguments_of_plane_strain_have_four_components() {
 }
 
 #[test]
+fn the_hidden_length_of_the_material_name_may_be_an_int() {
+    let sidecar = PROBE.replacen('{', "{\"hidden_length\": \"int\", ", 1);
+    let m = probed(&sidecar, [0.0; 9], [0.0; 6], [0.0; 6]);
+    let cmname = 6 + 1 + 8 + 6 + 6 + 2 + 3 + 2 + 2;
+    assert_eq!(m.state1::<4>(2, cmname), [80.0, 9.0, 80.0, 32.0]);
+}
+
+#[test]
 fn the_first_increment_has_number_one_and_states_begin_by_sdvini() {
     let mut m = Material::new(model("probe.f90", PROBE), &[], 2).expect("an instance");
     m.set_input(LAHAR_INPUT_PARTICLE_ID, 1, 4.0);
