@@ -161,7 +161,7 @@ extern "C" {
 // The point is updated.
 #define LAHAR_POINT_OK 0
 
-// The point is updated, but the result is less accurate than promised.
+// The point is updated, but the result is less accurate than promised; the engine logs the first of them.
 #define LAHAR_POINT_UNRELIABLE 1
 
 // The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
