@@ -238,15 +238,6 @@ module lahar_plugin
       type(lahar_point_end), intent(inout) :: after
     end subroutine lahar_point_routine
 
-    !> Hands on to model%new_instance(values, instance); one for each model, since the engine does not tell which it is.
-    integer(c_int32_t) function lahar_create_function(values, count, instance) bind(c)
-      import :: c_double, c_int32_t, c_int64_t, c_ptr
-      implicit none
-      integer(c_int64_t), value :: count
-      real(c_double), intent(in) :: values(count)
-      type(c_ptr), intent(out) :: instance
-    end function lahar_create_function
-
     subroutine host_set_error(message) bind(c)
       import :: c_char
       implicit none
@@ -261,12 +252,13 @@ module lahar_plugin
     end subroutine host_log
   end interface
 
-  public :: lahar_constants_routine, lahar_point_routine, lahar_create_function
+  public :: lahar_constants_routine, lahar_point_routine
 
   !> A model with its tables.
   type, public :: lahar_model
     private
     type(lahar_model_desc) :: desc
+    type(lahar_model), pointer :: before => null()
     type(lahar_parameter_desc), pointer :: parameters(:) => null()
     type(lahar_state_desc), pointer :: states(:) => null()
     integer(c_int32_t), pointer :: inputs(:) => null()
@@ -277,7 +269,6 @@ module lahar_plugin
   contains
     procedure, public :: add_parameter
     procedure, public :: add_state
-    procedure, public :: new_instance
   end type lahar_model
 
   !> A plugin: a library of models.
@@ -293,7 +284,7 @@ module lahar_plugin
 
   !> A model with one set of values.
   type :: instance_of_model
-    class(lahar_model), pointer :: model => null()
+    type(lahar_model), pointer :: model => null()
     real(c_double), allocatable :: constants(:)
   end type instance_of_model
 
@@ -315,6 +306,7 @@ module lahar_plugin
   real(c_double), parameter :: infinity = transfer(9218868437227405312_c_int64_t, 1.0_c_double)
   type(lahar_host_api), pointer, save :: host => null()
   type(lahar_library), pointer, save :: last_library => null() ! keeps all of them
+  type(lahar_model), pointer, save :: last_model => null() ! likewise
 
   public :: lahar_new_library, lahar_log
 
@@ -351,20 +343,21 @@ contains
     table = c_loc(self%desc)
   end function table
 
-  !> Adds a model. `create` hands on to new_instance of the answer; `first_state` sets the first state, if it follows from the stress.
-  function add_model(self, name, summary, reference, kinematics, inputs, outputs, capabilities, create, constants, point, &
+  !> Adds a model. `first_state` sets the first state, if it follows from the stress.
+  function add_model(self, name, summary, reference, kinematics, inputs, outputs, capabilities, constants, point, &
       first_state) result(model)
     class(lahar_library), intent(inout) :: self
     character(*), intent(in) :: name, summary, reference
     integer(c_int32_t), intent(in) :: kinematics, inputs(:)
     integer(c_int64_t), intent(in) :: outputs, capabilities
-    procedure(lahar_create_function) :: create
     procedure(lahar_constants_routine) :: constants
     procedure(lahar_point_routine) :: point
     procedure(lahar_point_routine), optional :: first_state
     type(lahar_model), pointer :: model
     type(c_ptr), pointer :: longer(:)
     allocate (model)
+    model%before => last_model
+    last_model => model
     allocate (model%parameters(0), model%states(0))
     allocate (model%inputs(size(inputs)), source=inputs)
     model%constants => constants
@@ -496,19 +489,26 @@ contains
 
   ! ---- functions of the tables
 
-  !> Makes an instance from the values of the parameters; the answer is that of `create`.
-  integer(c_int32_t) function new_instance(self, values, instance) result(answer)
-    class(lahar_model), intent(in), target :: self
-    real(c_double), intent(in) :: values(:)
+  integer(c_int32_t) function create(table, values, count, instance) bind(c, name='') result(answer)
+    type(c_ptr), value :: table
+    integer(c_int64_t), value :: count
+    real(c_double), intent(in) :: values(count)
     type(c_ptr), intent(out) :: instance
+    type(lahar_model), pointer :: model
     type(instance_of_model), pointer :: made
     character(:), allocatable :: message
     instance = c_null_ptr
     answer = LAHAR_PLUGIN_ERROR
-    if (size(values) /= size(self%parameters)) return
+    model => last_model
+    do while (associated(model))
+      if (c_associated(table, c_loc(model%desc))) exit
+      model => model%before
+    end do
+    if (.not. associated(model)) return
+    if (count /= size(model%parameters)) return
     allocate (made)
-    made%model => self
-    call self%constants(values, made%constants, message)
+    made%model => model
+    call model%constants(values, made%constants, message)
     if (allocated(message)) then
       call tell_error(message)
       deallocate (made)
@@ -516,7 +516,7 @@ contains
     end if
     instance = c_loc(made)
     answer = LAHAR_PLUGIN_OK
-  end function new_instance
+  end function create
 
   subroutine destroy(instance) bind(c, name='')
     type(c_ptr), value :: instance

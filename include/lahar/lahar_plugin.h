@@ -28,9 +28,9 @@ extern "C" {
  * Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
  * extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
  *
- * * `[exclusive]`: one call at a time in the whole process, on any thread;
- * * `[concurrent]`: on any thread, at the same time as other calls on the same instance, unless the model does not declare
- *   `LAHAR_CAPABILITY_THREAD_SAFE`: then one call at a time over all such models of the library.
+ * * `[exclusive]`: one such call at a time in the whole process, on any thread;
+ * * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as exclusive ones. If the model does not
+ *   declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either kind come one at a time over all such models of the library.
  *
  * No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
  * may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
@@ -292,7 +292,8 @@ typedef struct lahar_stress_batch {
     int32_t *status;
 } lahar_stress_batch;
 
-// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process.
+// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process. Functions that have no
+// instance yet are given the table, so that models may share them.
 typedef struct lahar_model_desc {
     // Size of this table in bytes, as the plugin knows it.
     uint32_t struct_size;
@@ -326,14 +327,21 @@ typedef struct lahar_model_desc {
     uint64_t outputs;
     // Sum of `LAHAR_CAPABILITY_*`.
     uint64_t capabilities;
-    // Makes an instance from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
+    // Makes an instance of `model`, this table, from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
     // `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
-    int32_t (*create)(const double *values, int64_t count, void **instance);
+    int32_t (*create)(const struct lahar_model_desc *model,
+                      const double *values,
+                      int64_t count,
+                      void **instance);
     // Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     void (*destroy)(void *instance);
     // Says whether the values go together; if not, writes a NUL-terminated sentence into `capacity` bytes. May be NULL.
     // [exclusive; before create]
-    int32_t (*check)(const double *values, int64_t count, char *message, int64_t capacity);
+    int32_t (*check)(const struct lahar_model_desc *model,
+                     const double *values,
+                     int64_t count,
+                     char *message,
+                     int64_t capacity);
     // Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
     // [concurrent; between create and destroy]
     int32_t (*init_state)(const void *instance, const lahar_stress_batch *batch);
@@ -346,7 +354,7 @@ typedef struct lahar_model_desc {
     // A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
     // (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
     // begin with. [exclusive; after the entry]
-    const void *(*get_extension)(const char *id);
+    const void *(*get_extension)(const struct lahar_model_desc *model, const char *id);
 } lahar_model_desc;
 
 // Extension `lahar.tangent`, offered together with `LAHAR_CAPABILITY_TANGENT`.
@@ -411,7 +419,7 @@ typedef struct lahar_plugin_desc {
 // [exclusive; once in a process, again only after it has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *host);
 
-// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports beside its entry: it makes a plugin of the foreign library at `path`
+// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it makes a plugin of the foreign library at `path`
 // (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
 // after it has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_adapt)(const lahar_host_api *host,
@@ -434,7 +442,7 @@ typedef const lahar_plugin_desc *(*lahar_plugin_adapt)(const lahar_host_api *hos
 // [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
 
-// Defined by adapters beside the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// Defined by adapters instead of the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
 // [exclusive; once for each library, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 

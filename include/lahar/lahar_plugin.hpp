@@ -204,14 +204,14 @@ struct has_init_state<Model, std::void_t<decltype(std::declval<const Model &>().
 
 /* The functions of the table of one model. */
 template <class Model> struct Functions {
-    static std::int32_t create(const double *values, std::int64_t, void **instance) noexcept {
+    static std::int32_t create(const lahar_model_desc *, const double *values, std::int64_t, void **instance) noexcept {
         *instance = nullptr;
         return guard([&] { *instance = std::make_unique<Model>(values).release(); }, set_error);
     }
 
     static void destroy(void *instance) noexcept { delete static_cast<Model *>(instance); }
 
-    static std::int32_t check(const double *values, std::int64_t, char *message, std::int64_t capacity) noexcept {
+    static std::int32_t check(const lahar_model_desc *, const double *values, std::int64_t, char *message, std::int64_t capacity) noexcept {
         return guard([&] { Model trial(values); },
                      [&](const char *text) {
                          if (message == nullptr || capacity < 1) return;

@@ -46,9 +46,10 @@ typedef struct own_material {
 } own_material;
 
 /* CHANGE how they are made. Values come in the order of `parameters`, inside their hard bounds. */
-static int32_t create(const double *values, int64_t count, void **instance) {
+static int32_t create(const lahar_model_desc *model, const double *values, int64_t count, void **instance) {
     const double e = values[0], nu = values[1];
     own_material *m;
+    (void)model; /* which of several models of the library */
     *instance = NULL;
     if (count != PARAMETERS) return LAHAR_PLUGIN_ERROR;
     m = malloc(sizeof *m);

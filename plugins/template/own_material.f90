@@ -14,8 +14,6 @@ module own_material
   private
   public :: lahar_plugin_entry_v1
 
-  type(lahar_model), pointer, save :: model => null()
-
 contains
 
   ! CHANGE the constants of one instance, made once from the values of the parameters, which come in their order inside their hard
@@ -69,13 +67,14 @@ contains
     type(c_ptr), value :: host
     type(c_ptr) :: plugin
     type(lahar_library), pointer :: library
+    type(lahar_model), pointer :: model
     library => lahar_new_library(host, id='org.example.own_material', version='1.0', author='You', licence='MIT OR Apache-2.0')
     model => library%add_model('own_material', summary='Linear elasticity with a von Mises cap', &
         reference='Simo, Hughes: Computational Inelasticity (1998), section 3.3, doi:10.1007/b98904', &
         kinematics=LAHAR_KINEMATICS_STRAIN_INCREMENT, inputs=[LAHAR_INPUT_DENSITY], &
         outputs=LAHAR_OUTPUT_WAVE_SPEED + LAHAR_OUTPUT_STATUS, &
         capabilities=LAHAR_CAPABILITY_THREAD_SAFE + LAHAR_CAPABILITY_POINTWISE + LAHAR_CAPABILITY_DETERMINISTIC, &
-        create=create, constants=make_constants, point=update_point)
+        constants=make_constants, point=update_point)
     call model%add_parameter('youngs_modulus', 'E', 'Pa', "Young's modulus", typical=1e7_c_double, &
         hard_min=tiny(1.0_c_double), advised_min=1e4_c_double, advised_max=1e12_c_double)
     call model%add_parameter('poissons_ratio', 'nu', '-', "Poisson's ratio", typical=0.3_c_double, &
@@ -85,14 +84,6 @@ contains
     call model%add_state('equivalent_plastic_strain', '-', 'Integral of the rate of plastic strain')
     plugin = library%table()
   end function lahar_plugin_entry_v1
-
-  ! One such function for each model of the library.
-  integer(c_int32_t) function create(values, count, instance) bind(c, name='')
-    integer(c_int64_t), value :: count
-    real(c_double), intent(in) :: values(count)
-    type(c_ptr), intent(out) :: instance
-    create = model%new_instance(values, instance)
-  end function create
 
   pure logical function is_finite(x)
     real(c_double), intent(in) :: x(:)

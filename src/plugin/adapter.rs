@@ -1,6 +1,7 @@
 //! Calls the functions of a model: builds the C batch from the safe one and turns return values into errors.
 
 use super::checked::{self, checks};
+use super::exclusive;
 use super::host::take_error;
 use crate::error::{Error, Result, Status};
 use crate::material::{Kinematics, Model, StressBatch};
@@ -8,9 +9,6 @@ use lahar_plugin_abi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// `create`, `destroy` and `check` run one at a time in the whole process.
-static LIFECYCLE: Mutex<()> = Mutex::new(());
 
 /// At least as many inputs as there are kinds; the handshake refuses duplicates.
 const INPUTS: usize = 12;
@@ -20,11 +18,17 @@ type Call = unsafe extern "C" fn(*const c_void, *const lahar_stress_batch) -> i3
 /// An extension's function, which writes into an array of its own.
 type WithOutput = unsafe extern "C" fn(*const c_void, *const lahar_stress_batch, *mut f64) -> i32;
 
+type Check =
+    unsafe extern "C" fn(*const lahar_model_desc, *const f64, i64, *mut c_char, i64) -> i32;
+
 /// The functions of a model, checked by the handshake.
 pub(crate) struct Functions {
-    pub(super) create: unsafe extern "C" fn(*const f64, i64, *mut *mut c_void) -> i32,
+    /// The table that the functions stand in; `create` and `check` are given it.
+    pub(super) desc: &'static lahar_model_desc,
+    pub(super) create:
+        unsafe extern "C" fn(*const lahar_model_desc, *const f64, i64, *mut *mut c_void) -> i32,
     pub(super) destroy: unsafe extern "C" fn(*mut c_void),
-    pub(super) check: Option<unsafe extern "C" fn(*const f64, i64, *mut c_char, i64) -> i32>,
+    pub(super) check: Option<Check>,
     pub(super) init_state: Option<Call>,
     pub(super) update: Call,
     pub(super) wave_speed: Call,
@@ -35,6 +39,11 @@ pub(crate) struct Functions {
 }
 
 impl Functions {
+    /// Keeps other calls of the library's models away, if they are not thread-safe; after [`exclusive`] where both are held.
+    fn alone(&self) -> Option<MutexGuard<'static, ()>> {
+        self.serial.map(|m| m.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     pub(crate) fn offers_tangent(&self) -> bool {
         self.tangent.is_some()
     }
@@ -84,7 +93,7 @@ pub(crate) struct Instance {
 }
 
 // SAFETY: the ABI lets any thread call an instance; `serial` keeps threads apart where the model asks for it, and
-// `LIFECYCLE` does for creation and destruction.
+// the lock of exclusive functions does for creation and destruction.
 unsafe impl Send for Instance {}
 // SAFETY: as above.
 unsafe impl Sync for Instance {}
@@ -93,7 +102,9 @@ impl Instance {
     /// Asks the model whether the values (one per parameter) go together and makes an instance.
     /// Errors: [`Status::OutOfBounds`] with the model's text.
     pub(crate) fn new(model: &'static Model, values: &[f64]) -> Result<Self> {
-        let _one_at_a_time = LIFECYCLE.lock().unwrap_or_else(PoisonError::into_inner);
+        let checked = checks()?;
+        let functions = &model.functions;
+        let _alone = (exclusive(), functions.alone());
         take_error();
         let refused = |text: Option<String>| {
             let text = text.unwrap_or_else(|| "without saying why".into());
@@ -101,11 +112,13 @@ impl Instance {
             Error::new(Status::OutOfBounds, text)
         };
         let count = values.len() as i64;
-        if let Some(check) = model.functions.check {
+        if let Some(check) = functions.check {
             let mut text = [0_u8; 1024];
             let capacity = text.len() as i64;
             // SAFETY: `values` has `count` values and `text` has `capacity` bytes.
-            let code = unsafe { check(values.as_ptr(), count, text.as_mut_ptr().cast(), capacity) };
+            let code = unsafe {
+                check(functions.desc, values.as_ptr(), count, text.as_mut_ptr().cast(), capacity)
+            };
             if code != LAHAR_PLUGIN_OK {
                 let text = CStr::from_bytes_until_nul(&text).unwrap_or_default().to_string_lossy();
                 let fallback = take_error();
@@ -114,11 +127,12 @@ impl Instance {
         }
         let mut pointer = ptr::null_mut();
         // SAFETY: `values` has `count` values and `pointer` is a place for one pointer.
-        let code = unsafe { (model.functions.create)(values.as_ptr(), count, &mut pointer) };
+        let code =
+            unsafe { (functions.create)(functions.desc, values.as_ptr(), count, &mut pointer) };
         if code != LAHAR_PLUGIN_OK {
             return Err(refused(take_error()));
         }
-        Ok(Self { model, pointer, checked: checks()? })
+        Ok(Self { model, pointer, checked })
     }
 
     pub(crate) fn model(&self) -> &'static Model {
@@ -229,7 +243,7 @@ impl Instance {
         // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
         // arrays are borrowed for the call, and mutable borrows do not alias.
         let plain = |function: Call| unsafe { function(self.pointer, &raw) };
-        let _one_at_a_time = self.serial();
+        let _one_at_a_time = self.model.functions.alone();
         take_error();
         let code = match verb {
             Verb::Update => plain(functions.update),
@@ -263,10 +277,6 @@ impl Instance {
             need(verb.name(), own.len())?;
         }
         array_mut(verb.name(), own, verb.own_components(), batch.stride).map(|_| ())
-    }
-
-    fn serial(&self) -> Option<MutexGuard<'static, ()>> {
-        self.model.functions.serial.map(|m| m.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// One pointer per wanted input, in the descriptor's order.
@@ -353,7 +363,7 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        let _one_at_a_time = LIFECYCLE.lock().unwrap_or_else(PoisonError::into_inner);
+        let _alone = (exclusive(), self.model.functions.alone());
         // SAFETY: the instance came from this model's `create`, and nobody can use it any more.
         unsafe { (self.model.functions.destroy)(self.pointer) };
     }

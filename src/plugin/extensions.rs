@@ -82,7 +82,7 @@ unsafe fn table_of<T>(
 ) -> Result<Option<&'static T>> {
     let Some(get_extension) = desc.get_extension else { return Ok(None) };
     // SAFETY: the id ends with a NUL; loading is exclusive.
-    let table = unsafe { get_extension(id.as_ptr()) }.cast::<T>();
+    let table = unsafe { get_extension(desc, id.as_ptr()) }.cast::<T>();
     if table.is_null() {
         return Ok(None);
     }

@@ -320,12 +320,13 @@ unsafe fn read_states(
 }
 
 fn read_functions(
-    desc: &lahar_model_desc,
+    desc: &'static lahar_model_desc,
     extensions: &Extensions,
     place: &Place<'_>,
 ) -> Result<Functions> {
     let missing = |name: &str| place.error(format!("expected the function `{name}`, got NULL"));
     Ok(Functions {
+        desc,
         create: desc.create.ok_or_else(|| missing("create"))?,
         destroy: desc.destroy.ok_or_else(|| missing("destroy"))?,
         check: desc.check,

@@ -1,5 +1,6 @@
 //! Finds and opens plugin libraries. A file is opened once in a process and stays loaded until it ends.
 
+use super::exclusive;
 use super::handshake;
 use super::host::{HOST, take_error};
 use crate::error::{Error, Result, Status};
@@ -15,7 +16,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Every plugin of the process. The lock is held while a plugin loads: entries run one at a time.
+/// Every plugin of the process.
 static LOADED: Mutex<Vec<&'static Plugin>> = Mutex::new(Vec::new());
 
 type Entry = unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_desc;
@@ -37,7 +38,10 @@ pub(crate) fn load(name_or_path: &str) -> Result<&'static Plugin> {
     if let Some(plugin) = loaded.iter().find(|p| p.path == path) {
         return Ok(plugin);
     }
-    let plugin: &'static Plugin = Box::leak(Box::new(open(&path)?));
+    let plugin: &'static Plugin = {
+        let _alone = exclusive();
+        Box::leak(Box::new(open(&path)?))
+    };
     loaded.push(plugin);
     Ok(plugin)
 }
@@ -197,7 +201,7 @@ fn open(path: &Path) -> Result<Plugin> {
         entry => entry?,
     };
     take_error();
-    // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock of loading.
+    // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock of exclusive functions.
     let desc = unsafe { entry(&HOST) };
     if desc.is_null() {
         let why = take_error().unwrap_or_else(|| "without saying why".into());
@@ -232,7 +236,7 @@ fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
     let Some(adapt) = adapt else { return with(&format!("{shown} is not an adapter")) };
     let foreign = CString::new(path.as_os_str().as_bytes()).unwrap_or_default();
     take_error();
-    // SAFETY: the host table is static, the path ends with a NUL; the caller holds the lock of loading.
+    // SAFETY: the host table is static, the path ends with a NUL; the caller holds the lock of exclusive functions.
     let desc = unsafe { adapt(&HOST, foreign.as_ptr()) };
     if desc.is_null() {
         let why = take_error().unwrap_or_else(|| "without saying why".into());

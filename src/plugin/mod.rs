@@ -14,5 +14,13 @@ mod register;
 pub(crate) use adapter::{Functions, Instance};
 pub(crate) use checked::checks;
 pub(crate) use load::load;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Held while a function runs that the ABI tags as exclusive: entries, `create`, `destroy`, `check`, `get_extension`.
+fn exclusive() -> MutexGuard<'static, ()> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 pub use register::RustEntry;
 pub(crate) use register::{StaticEntry, register};

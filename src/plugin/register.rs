@@ -1,5 +1,6 @@
 //! Plugins that are linked into the program: their entries are called and their tables checked as those of a library are.
 
+use super::exclusive;
 use super::handshake;
 use super::host::{HOST, take_error};
 use crate::error::{Error, Result, Status};
@@ -47,7 +48,7 @@ impl StaticEntry {
 
     fn call(self) -> *const lahar_plugin_desc {
         match self.0 {
-            // SAFETY: the host table is static, the rest was asked for by `StaticEntry::c`; the caller holds the lock.
+            // SAFETY: the host table is static, the rest was asked for by `StaticEntry::c`; the caller holds the lock of exclusive functions.
             Language::C(entry) => unsafe { entry(&HOST) },
             Language::Rust(entry) => entry(&HOST),
         }
@@ -64,6 +65,7 @@ pub(crate) fn register(entry: StaticEntry) -> Result<&'static Plugin> {
     if let Some((_, plugin)) = registered.iter().find(|(known, _)| *known == address) {
         return Ok(plugin);
     }
+    let _alone = exclusive();
     take_error();
     let table = entry.call();
     if table.is_null() {

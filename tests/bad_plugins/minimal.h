@@ -13,7 +13,8 @@
 
 static const lahar_host_api *host;
 
-static int32_t create(const double *values, int64_t count, void **instance) {
+static int32_t create(const lahar_model_desc *table, const double *values, int64_t count, void **instance) {
+  (void)table;
   (void)values;
   *instance = (void *)&host; /* any address: the model keeps nothing */
   return count == 2 ? LAHAR_PLUGIN_OK : LAHAR_PLUGIN_ERROR;

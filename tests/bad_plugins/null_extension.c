@@ -5,7 +5,10 @@
 
 static lahar_tangent_extension table;
 
-static const void *get_extension(const char *id) { return strcmp(id, LAHAR_EXTENSION_TANGENT) ? NULL : &table; }
+static const void *get_extension(const lahar_model_desc *of, const char *id) {
+  (void)of;
+  return strcmp(id, LAHAR_EXTENSION_TANGENT) ? NULL : &table;
+}
 
 static void spoil(void) {
   table.struct_size = sizeof table;

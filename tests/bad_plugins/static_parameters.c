@@ -3,9 +3,9 @@
 
 static double factor;
 
-static int32_t keep(const double *values, int64_t count, void **instance) {
+static int32_t keep(const lahar_model_desc *table, const double *values, int64_t count, void **instance) {
   factor = values[0];
-  return create(values, count, instance);
+  return create(table, values, count, instance);
 }
 
 static int32_t bad_update(const void *instance, const lahar_stress_batch *b) {

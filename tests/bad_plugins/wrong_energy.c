@@ -16,10 +16,11 @@ static int32_t stored(const void *instance, const lahar_stress_batch *b, double 
   return LAHAR_PLUGIN_OK;
 }
 
-static const void *extension(const char *id) {
+static const void *extension(const lahar_model_desc *of, const char *id) {
   static lahar_energy_extension table;
   table.struct_size = sizeof table;
   table.stored = stored;
+  (void)of;
   return strcmp(id, "lahar.energy") == 0 ? &table : NULL;
 }
 

@@ -12,10 +12,11 @@ static int32_t tangent(const void *instance, const lahar_stress_batch *b, double
   return LAHAR_PLUGIN_OK;
 }
 
-static const void *extension(const char *id) {
+static const void *extension(const lahar_model_desc *of, const char *id) {
   static lahar_tangent_extension table;
   table.struct_size = sizeof table;
   table.tangent = tangent;
+  (void)of;
   return strcmp(id, "lahar.tangent") == 0 ? &table : NULL;
 }
 

@@ -101,6 +101,8 @@ fn plugin_header(root: &Path) -> Result<String, String> {
     write_section(&mut text, "plugin", &path, &types)?;
     text += PLUGIN_ENTRY;
     let layout = read(&root.join("src/ffi/layout.rs"))?;
+    // The table names itself before its typedef is complete.
+    text = text.replace("(const lahar_model_desc *", "(const struct lahar_model_desc *");
     text += &asserts(&layout, "lahar_plugin_abi")?;
     text += &closing("LAHAR_PLUGIN_H");
     Ok(text)
@@ -282,7 +284,7 @@ const PLUGIN_ENTRY: &str = r#"
 // [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
 
-// Defined by adapters beside the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// Defined by adapters instead of the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
 // [exclusive; once for each library, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 "#;

@@ -11,9 +11,9 @@
 //! Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
 //! extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
 //!
-//! * `[exclusive]`: one call at a time in the whole process, on any thread;
-//! * `[concurrent]`: on any thread, at the same time as other calls on the same instance, unless the model does not declare
-//!   `LAHAR_CAPABILITY_THREAD_SAFE`: then one call at a time over all such models of the library.
+//! * `[exclusive]`: one such call at a time in the whole process, on any thread;
+//! * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as exclusive ones. If the model does not
+//!   declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either kind come one at a time over all such models of the library.
 //!
 //! No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
 //! may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
@@ -250,7 +250,8 @@ pub struct lahar_stress_batch {
     pub status: *mut i32,
 }
 
-/// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process.
+/// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process. Functions that have no
+/// instance yet are given the table, so that models may share them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_model_desc {
@@ -286,10 +287,15 @@ pub struct lahar_model_desc {
     pub outputs: u64,
     /// Sum of `LAHAR_CAPABILITY_*`.
     pub capabilities: u64,
-    /// Makes an instance from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
+    /// Makes an instance of `model`, this table, from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
     /// `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
     pub create: Option<
-        unsafe extern "C" fn(values: *const f64, count: i64, instance: *mut *mut c_void) -> i32,
+        unsafe extern "C" fn(
+            model: *const lahar_model_desc,
+            values: *const f64,
+            count: i64,
+            instance: *mut *mut c_void,
+        ) -> i32,
     >,
     /// Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     pub destroy: Option<unsafe extern "C" fn(instance: *mut c_void)>,
@@ -297,6 +303,7 @@ pub struct lahar_model_desc {
     /// [exclusive; before create]
     pub check: Option<
         unsafe extern "C" fn(
+            model: *const lahar_model_desc,
             values: *const f64,
             count: i64,
             message: *mut c_char,
@@ -321,7 +328,9 @@ pub struct lahar_model_desc {
     /// A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
     /// (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
     /// begin with. [exclusive; after the entry]
-    pub get_extension: Option<unsafe extern "C" fn(id: *const c_char) -> *const c_void>,
+    pub get_extension: Option<
+        unsafe extern "C" fn(model: *const lahar_model_desc, id: *const c_char) -> *const c_void,
+    >,
 }
 
 /// Extension `lahar.tangent`, offered together with `LAHAR_CAPABILITY_TANGENT`.
@@ -407,7 +416,7 @@ pub struct lahar_plugin_desc {
 pub type lahar_plugin_entry =
     Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
 
-/// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports beside its entry: it makes a plugin of the foreign library at `path`
+/// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it makes a plugin of the foreign library at `path`
 /// (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
 /// after it has refused]
 pub type lahar_plugin_adapt = Option<

@@ -238,7 +238,7 @@ impl Driver {
     fn extension<T>(&self, id: &CStr) -> Result<*const T, String> {
         let get = self.model.get_extension.ok_or("the model has no extensions")?;
         // SAFETY: the id ends with a NUL.
-        let table: *const T = unsafe { get(id.as_ptr()) }.cast();
+        let table: *const T = unsafe { get(self.model, id.as_ptr()) }.cast();
         if table.is_null() { Err(format!("the model does not offer {id:?}")) } else { Ok(table) }
     }
 
@@ -376,7 +376,13 @@ fn create(model: &lahar_model_desc, values: &[f64]) -> Result<*mut c_void, Strin
         let mut text = [0_u8; 512];
         // SAFETY: `values` has `count` values and `text` its own length.
         let code = unsafe {
-            check(values.as_ptr(), count, text.as_mut_ptr().cast::<c_char>(), text.len() as i64)
+            check(
+                model,
+                values.as_ptr(),
+                count,
+                text.as_mut_ptr().cast::<c_char>(),
+                text.len() as i64,
+            )
         };
         if code != LAHAR_PLUGIN_OK {
             let text = CStr::from_bytes_until_nul(&text).unwrap_or(c"?");
@@ -386,7 +392,7 @@ fn create(model: &lahar_model_desc, values: &[f64]) -> Result<*mut c_void, Strin
     let create = model.create.ok_or("the model has no create")?;
     let mut instance = ptr::null_mut();
     // SAFETY: `values` has `count` values and `instance` is a place for one pointer.
-    result(unsafe { create(values.as_ptr(), count, &mut instance) })?;
+    result(unsafe { create(model, values.as_ptr(), count, &mut instance) })?;
     Ok(instance)
 }
 

@@ -340,7 +340,10 @@ impl<M: Model> Extensions<M> {
     };
 }
 
-unsafe extern "C" fn get_extension<M: Model>(id: *const c_char) -> *const c_void {
+unsafe extern "C" fn get_extension<M: Model>(
+    _model: *const lahar_model_desc,
+    id: *const c_char,
+) -> *const c_void {
     if id.is_null() {
         return ptr::null();
     }

@@ -89,6 +89,7 @@ fn panic_text(payload: &(dyn Any + Send)) -> &str {
 }
 
 pub(crate) unsafe extern "C" fn create<M: Model>(
+    _model: *const lahar_model_desc,
     values: *const f64,
     count: i64,
     instance: *mut *mut c_void,
@@ -115,6 +116,7 @@ pub(crate) unsafe extern "C" fn destroy<M: Model>(instance: *mut c_void) {
 }
 
 pub(crate) unsafe extern "C" fn check<M: Model>(
+    _model: *const lahar_model_desc,
     values: *const f64,
     count: i64,
     message: *mut c_char,

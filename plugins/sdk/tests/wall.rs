@@ -114,11 +114,11 @@ fn what_a_c_caller_must_not_pass_is_refused() {
     let mut instance: *mut c_void = ptr::null_mut();
     // SAFETY: NULL and a wrong count are what the function must refuse; the other arguments are valid.
     unsafe {
-        assert_eq!(create(ptr::null(), 1, &mut instance), LAHAR_PLUGIN_ERROR);
-        assert_eq!(create([0.0, 0.0].as_ptr(), 2, &mut instance), LAHAR_PLUGIN_ERROR);
-        assert_eq!(create([0.0].as_ptr(), 1, ptr::null_mut()), LAHAR_PLUGIN_ERROR);
+        assert_eq!(create(model, ptr::null(), 1, &mut instance), LAHAR_PLUGIN_ERROR);
+        assert_eq!(create(model, [0.0, 0.0].as_ptr(), 2, &mut instance), LAHAR_PLUGIN_ERROR);
+        assert_eq!(create(model, [0.0].as_ptr(), 1, ptr::null_mut()), LAHAR_PLUGIN_ERROR);
         assert!(instance.is_null());
-        assert_eq!(create([0.0].as_ptr(), 1, &mut instance), 0);
+        assert_eq!(create(model, [0.0].as_ptr(), 1, &mut instance), 0);
         assert_eq!(update(instance, ptr::null()), LAHAR_PLUGIN_ERROR);
     }
     let good = lahar_stress_batch {

@@ -8,37 +8,17 @@ use crate::sidecar::Routine;
 use crate::{sdvini, umat, vumat};
 use lahar_plugin_abi::*;
 use std::ffi::c_void;
+use std::ptr;
 use std::slice;
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
-/// Libraries that a process can adapt. `create` is not told the model, so each has a function of its own.
-const MOST: usize = 64;
+/// The adapted libraries by the addresses of their models' tables.
+static ADAPTED: Mutex<Vec<(usize, &'static Adapted)>> = Mutex::new(Vec::new());
 
-/// The adapted libraries, in the order of their adaption.
-pub static SLOTS: [OnceLock<Adapted>; MOST] = [const { OnceLock::new() }; MOST];
-
-type Create = unsafe extern "C" fn(*const f64, i64, *mut *mut c_void) -> i32;
-
-macro_rules! creates {
-    ($($high:literal)*) => {
-        [$(
-            create::<$high>, create::<{ $high + 1 }>, create::<{ $high + 2 }>, create::<{ $high + 3 }>,
-            create::<{ $high + 4 }>, create::<{ $high + 5 }>, create::<{ $high + 6 }>, create::<{ $high + 7 }>,
-        )*]
-    };
-}
-
-/// `create` of each slot.
-pub static CREATE: [Create; MOST] = creates!(0 8 16 24 32 40 48 56);
-
-/// The next slot.
-pub fn free_slot() -> Result<usize, String> {
-    let free = SLOTS.iter().position(|slot| slot.get().is_none());
-    free.ok_or_else(|| {
-        format!(
-            "{MOST} libraries with UMATs are loaded, which is the most that one process can have"
-        )
-    })
+/// Lets `create` find the library of a model.
+pub fn remember(model: &'static lahar_model_desc, adapted: &'static Adapted) {
+    let mut known = ADAPTED.lock().unwrap_or_else(PoisonError::into_inner);
+    known.push((ptr::from_ref(model).addr(), adapted));
 }
 
 /// A material: an adapted library with values for its parameters.
@@ -67,13 +47,18 @@ impl Instance {
     }
 }
 
-unsafe extern "C" fn create<const SLOT: usize>(
+/// Makes an instance of the library that the model was made of.
+pub unsafe extern "C" fn create(
+    model: *const lahar_model_desc,
     values: *const f64,
     count: i64,
     instance: *mut *mut c_void,
 ) -> i32 {
     code(guard(|| {
-        let adapted = SLOTS[SLOT].get().ok_or("no library was adapted for this function")?;
+        let known = ADAPTED.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = known.iter().find(|(table, _)| *table == model.addr()).map(|(_, a)| *a);
+        drop(known);
+        let adapted = found.ok_or("the model is not one of this adapter")?;
         let wanted = adapted.parameter_count;
         if usize::try_from(count) != Ok(wanted) {
             return Err(format!("expected {wanted} parameter values, got {count}"));

@@ -1,6 +1,6 @@
 //! Turns a library and its sidecar into the tables of the plugin ABI.
 
-use crate::calls::{self, SLOTS};
+use crate::calls;
 use crate::host::{c_string, log};
 use crate::library::UserLibrary;
 use crate::sidecar::{
@@ -92,12 +92,12 @@ pub fn adapt(path: &Path) -> Result<&'static lahar_plugin_desc, String> {
         );
     }
     let (parameters, counted) = parameters(&sidecar);
-    let slot = calls::free_slot()?;
     let mut states = States::default();
     states.of_routine(&sidecar, library.routine);
     let adapted = states.adapted(&sidecar, library, &name, (&parameters, counted))?;
-    let adapted = SLOTS[slot].get_or_init(|| adapted);
-    let model = model(&sidecar, &name, (slot, adapted), parameters, states.table);
+    let adapted: &'static Adapted = Box::leak(Box::new(adapted));
+    let model = model(&sidecar, &name, adapted, parameters, states.table);
+    calls::remember(model, adapted);
     Ok(plugin(&sidecar, &name, model))
 }
 
@@ -366,7 +366,7 @@ fn inputs(sidecar: &Sidecar, routine: Routine) -> Vec<i32> {
 fn model(
     sidecar: &Sidecar,
     name: &str,
-    (slot, adapted): (usize, &Adapted),
+    adapted: &Adapted,
     parameters: Vec<lahar_parameter_desc>,
     states: Vec<lahar_state_desc>,
 ) -> &'static lahar_model_desc {
@@ -404,7 +404,7 @@ fn model(
         inputs: leak(inputs),
         outputs: LAHAR_OUTPUT_WAVE_SPEED | LAHAR_OUTPUT_STATUS | factor | energy,
         capabilities: LAHAR_CAPABILITY_MAY_STOP | LAHAR_CAPABILITY_MAY_PRINT | threads,
-        create: Some(calls::CREATE[slot]),
+        create: Some(calls::create),
         destroy: Some(calls::destroy),
         check: None,
         init_state: has_sdvini.then_some(calls::init_state),

@@ -141,7 +141,7 @@ impl Material {
         let mut instance = ptr::null_mut();
         let create = model.create.expect("create");
         // SAFETY: the values are as many as the model has parameters.
-        let code = unsafe { create(values.as_ptr(), values.len() as i64, &mut instance) };
+        let code = unsafe { create(model, values.as_ptr(), values.len() as i64, &mut instance) };
         if code != LAHAR_PLUGIN_OK {
             return Err(ERROR.take());
         }
