@@ -44,6 +44,8 @@ pub enum Status {
     OutsideGrid = 102,
     /// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
     SmallerStep = 103,
+    /// A material gave no wave speed or no first state; nothing was done.
+    MaterialRefused = 104,
     /// A file could not be read or written.
     File = 200,
     /// The plugin file is missing.
@@ -71,13 +73,8 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether a material failed, or what it gave.
-    pub fn is_of_material(self) -> bool {
-        matches!(self, Self::MaterialFailed | Self::NonFinite)
-    }
-
     /// Every status, in the order of the documentation.
-    pub const ALL: [Status; 30] = [
+    pub const ALL: [Status; 31] = [
         Status::Ok,
         Status::NullArgument,
         Status::StructSize,
@@ -96,6 +93,7 @@ impl Status {
         Status::NonFiniteInput,
         Status::OutsideGrid,
         Status::SmallerStep,
+        Status::MaterialRefused,
         Status::File,
         Status::PluginNotFound,
         Status::PluginInvalid,

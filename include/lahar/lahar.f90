@@ -41,6 +41,7 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_NON_FINITE_INPUT = 101_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_OUTSIDE_GRID = 102_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_SMALLER_STEP = 103_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ERROR_MATERIAL_REFUSED = 104_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_FILE = 200_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_NOT_FOUND = 201_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_INVALID = 202_c_int32_t

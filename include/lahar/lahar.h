@@ -104,6 +104,9 @@ struct lahar_host_api;
 // A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
 #define LAHAR_ERROR_SMALLER_STEP 103
 
+// A material gave no wave speed or no first state; nothing was done.
+#define LAHAR_ERROR_MATERIAL_REFUSED 104
+
 // A file could not be read or written.
 #define LAHAR_ERROR_FILE 200
 
@@ -723,9 +726,11 @@ lahar_status lahar_world_set_damping(lahar_world *world, double damping);
 // LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of
 // a static grid or too far away; the world cannot step until the host writes positions back or removes the body),
 // LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
-// LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
-// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE, LAHAR_ERROR_PANIC;
-// lahar_last_error_info tells the body, the particle, the step and the time.
+// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material
+// failed or asks for a smaller step, the length of which is in `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
+// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE (both not with `retries`, unless a model fails as a whole),
+// LAHAR_ERROR_PLUGIN_BROKEN, LAHAR_ERROR_PANIC; lahar_last_error_info tells the body, the particle, the step and the time.
 // Thread: owner
 lahar_status lahar_world_step(lahar_world *world,
                               double dt);
@@ -761,7 +766,7 @@ lahar_status lahar_world_advance(lahar_world *world,
 // above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
 // dimension, nu the kinematic viscosity. Gravity by a table counts with its largest value in the step, and a prescribed
 // velocity V with |V| dt <= cfl h.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed).
 // Thread: callback-ok
 lahar_status lahar_world_stable_dt(const lahar_world *world,
                                    double *dt);

@@ -45,6 +45,8 @@ pub const LAHAR_ERROR_NON_FINITE_INPUT: i32 = 101;
 pub const LAHAR_ERROR_OUTSIDE_GRID: i32 = 102;
 /// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
 pub const LAHAR_ERROR_SMALLER_STEP: i32 = 103;
+/// A material gave no wave speed or no first state; nothing was done.
+pub const LAHAR_ERROR_MATERIAL_REFUSED: i32 = 104;
 /// A file could not be read or written.
 pub const LAHAR_ERROR_FILE: i32 = 200;
 /// The plugin file is missing.
@@ -90,6 +92,7 @@ pub(super) const TABLE: [(Status, i32, &CStr); Status::ALL.len()] = [
     (Status::NonFiniteInput, LAHAR_ERROR_NON_FINITE_INPUT, c"LAHAR_ERROR_NON_FINITE_INPUT"),
     (Status::OutsideGrid, LAHAR_ERROR_OUTSIDE_GRID, c"LAHAR_ERROR_OUTSIDE_GRID"),
     (Status::SmallerStep, LAHAR_ERROR_SMALLER_STEP, c"LAHAR_ERROR_SMALLER_STEP"),
+    (Status::MaterialRefused, LAHAR_ERROR_MATERIAL_REFUSED, c"LAHAR_ERROR_MATERIAL_REFUSED"),
     (Status::File, LAHAR_ERROR_FILE, c"LAHAR_ERROR_FILE"),
     (Status::PluginNotFound, LAHAR_ERROR_PLUGIN_NOT_FOUND, c"LAHAR_ERROR_PLUGIN_NOT_FOUND"),
     (Status::PluginInvalid, LAHAR_ERROR_PLUGIN_INVALID, c"LAHAR_ERROR_PLUGIN_INVALID"),

@@ -19,6 +19,24 @@ use std::sync::Mutex;
 /// No sane plugin has more models, or a model more parameters, states or inputs.
 const MOST: u32 = 4096;
 
+/// Names that particles' own fields, and columns of files, have.
+const RESERVED: [&str; 14] = [
+    "id",
+    "body",
+    "position",
+    "velocity",
+    "mass",
+    "volume",
+    "stress",
+    "strain_energy",
+    "temperature",
+    "pore_pressure",
+    "size",
+    "body_force",
+    "affine",
+    "deformation_gradient",
+];
+
 const KNOWN_OUTPUTS: u64 = LAHAR_OUTPUT_WAVE_SPEED
     | LAHAR_OUTPUT_DIFFUSIVITY
     | LAHAR_OUTPUT_ENERGY
@@ -35,16 +53,21 @@ struct Text {
 pub(super) struct Place<'a> {
     path: &'a Path,
     pub(super) at: String,
+    /// Minor version that the plugin was made for; 0 before it is known.
+    minor: u32,
 }
 
 impl Place<'_> {
     pub(super) fn inside(&self, at: String) -> Place<'_> {
-        Place { path: self.path, at }
+        Place { path: self.path, at, minor: self.minor }
     }
 
     pub(super) fn error(&self, what: impl AsRef<str>) -> Error {
         let (path, at) = (self.path.display(), &self.at);
-        let advice = "this is a mistake in the plugin, which its author must correct";
+        let advice = match self.minor.saturating_sub(LAHAR_PLUGIN_ABI_MINOR) > 0 {
+            true => "the plugin was made for a newer lahar, which may know it",
+            false => "this is a mistake in the plugin, which its author must correct",
+        };
         let text = format!("plugin {path}: {at}: {}; {advice}", what.as_ref());
         Error::new(Status::PluginInvalid, text)
     }
@@ -147,7 +170,7 @@ impl Place<'_> {
 /// `desc` came from the entry of our major or from a host that registers it: it is a table of the ABI whose pointers are NULL or valid for the life of
 /// the process.
 pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) -> Result<Plugin> {
-    let place = Place { path, at: "plugin table".into() };
+    let mut place = Place { path, at: "plugin table".into(), minor: 0 };
     // SAFETY: told by the caller.
     let desc = unsafe { place.table(desc) }?;
     if desc.abi_major != LAHAR_PLUGIN_ABI_MAJOR {
@@ -161,6 +184,7 @@ pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) ->
             ),
         ));
     }
+    place.minor = desc.abi_minor;
     place.ensure(desc.model_count > 0, || "expected at least one model, got none".into())?;
     // SAFETY: the pointers of the table are NULL or valid for the life of the process.
     let (id, version, author, licence, url, tables) = unsafe {
@@ -316,6 +340,12 @@ unsafe fn read_states(
         known.push(StateVariable { transfer, ..state });
     }
     place.unique("state variables", known.iter().map(|s| s.key))?;
+    if let Some(state) = known.iter().find(|s| RESERVED.contains(&s.key)) {
+        return Err(place.error(format!(
+            "its state variable `{}` has the name of a field that every particle may have; choose another",
+            state.key
+        )));
+    }
     Ok(known)
 }
 

@@ -24,6 +24,9 @@ type Entry = unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_
 /// The plugin that makes plugins of libraries that are none, such as those with a UMAT.
 const ADAPTER: &str = "lahar_umat";
 
+/// Its export.
+const ADAPT: &str = "lahar_plugin_adapt_v1\0";
+
 type Adapt = unsafe extern "C" fn(*const lahar_host_api, *const c_char) -> *const lahar_plugin_desc;
 
 /// Majors whose entry symbols are looked for when that of this library is missing.
@@ -194,9 +197,15 @@ fn open(path: &Path) -> Result<Plugin> {
         Error::new(Status::PluginInvalid, text)
     })?;
     let entry = find_entry(&library, path);
+    // SAFETY: the symbol is only looked for.
+    let is_adapter = unsafe { library.get::<Adapt>(ADAPT.as_bytes()) }.is_ok();
     // Thread-local destructors and static texts of a library live on: it is never unloaded, usable or not.
     std::mem::forget(library);
     let entry = match entry {
+        Err(_) if is_adapter => {
+            let text = "this is an adapter, which makes plugins of foreign libraries: give the library with the UMAT or VUMAT itself";
+            return Err(Error::new(Status::PluginInvalid, format!("plugin {shown}: {text}")));
+        }
         Err(error) if error.status == Status::PluginInvalid => return adapted(path, error),
         entry => entry?,
     };
@@ -229,9 +238,8 @@ fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
         Ok(library) => library,
         Err(error) => return with(&format!("{shown} cannot be loaded: {}", with_source(&error))),
     };
-    let name = format!("lahar_plugin_adapt_v{LAHAR_PLUGIN_ABI_MAJOR}\0");
     // SAFETY: the symbol's name fixes its type.
-    let adapt = unsafe { library.get::<Adapt>(name.as_bytes()) }.ok().map(|symbol| *symbol);
+    let adapt = unsafe { library.get::<Adapt>(ADAPT.as_bytes()) }.ok().map(|symbol| *symbol);
     std::mem::forget(library);
     let Some(adapt) = adapt else { return with(&format!("{shown} is not an adapter")) };
     let foreign = CString::new(path.as_os_str().as_bytes()).unwrap_or_default();
@@ -240,7 +248,12 @@ fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
     let desc = unsafe { adapt(&HOST, foreign.as_ptr()) };
     if desc.is_null() {
         let why = take_error().unwrap_or_else(|| "without saying why".into());
-        return with(&format!("and {shown} does not take it: {why}"));
+        let path = path.display();
+        let text = format!(
+            "plugin {path}: not a lahar plugin (it has no lahar_plugin_entry_v{LAHAR_PLUGIN_ABI_MAJOR}), and the adapter {shown} does \
+             not take it: {why}"
+        );
+        return Err(Error::new(Status::PluginInvalid, text));
     }
     // SAFETY: an adapter of this major returns a table of this major, valid for the life of the process.
     unsafe { handshake::read_plugin(desc, path) }

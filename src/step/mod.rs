@@ -55,6 +55,7 @@ use update_stress::{Failure, Outcome, update_stress};
 pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits, Box<Failure>> {
     check_radii(world)?;
     locate(world)?;
+    world.stale = false;
     if world.options.retries > 0 {
         keep_start(world)?;
     }
@@ -66,7 +67,7 @@ pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits, Box
         StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
-    world.unreliable = outcome.unreliable();
+    (world.unreliable, world.wish) = (outcome.unreliable(), outcome.wish());
     outcome.limits(dt)
 }
 

@@ -5,7 +5,9 @@
 //! rest and carries no wave from falling through a wall in one step. Each stress update leaves the limits of the next step; after
 //! the host changed particles they are asked of the materials anew.
 
-use crate::error::{Error, Result};
+use lahar_plugin_abi::LAHAR_POINT_FAILED;
+
+use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
 use crate::particles::CHUNK;
 use crate::world::options::Options;
@@ -86,31 +88,45 @@ fn limits_of_chunk<const D: usize>(
         s.fill_density(&layout, column);
         s.fill_inputs(&layout, column, &particles.id[first..first + n], spacing);
         let mut batch = StressBatch { dt: 0.0, time: 0.0, ..s.batch() };
-        body.material.wave_speed(&mut batch)?;
+        body.material
+            .wave_speed(&mut batch)
+            .map_err(|error| refused(body, None, &error.message))?;
+        if let Some(k) = s.status[..n].iter().position(|status| *status >= LAHAR_POINT_FAILED) {
+            return Err(refused(body, Some(first + k), "it says that the point failed"));
+        }
         let mut limits = Limits::default();
         for k in 0..n {
             let v = particles.get::<D>(layout.velocity, first + k);
             let speed = s.wave_speed[k] + v.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if !speed.is_finite() {
-                let id = particles.id[first + k];
-                return Err(Error::invalid(format!(
-                    "the wave speed of particle {id} of body {} is {speed}; check its velocity, stress, state and parameters",
-                    body.id
-                )));
+            if !speed.is_finite() || s.wave_speed[k] < 0.0 {
+                let text = format!("the speed is {} m/s", s.wave_speed[k]);
+                return Err(refused(body, Some(first + k), &text));
             }
             limits.speed = limits.speed.max(speed);
             if let Some(nu) = s.diffusivity.get(k) {
                 limits.diffusivity = larger(limits.diffusivity, *nu);
             }
         }
-        if limits.diffusivity.is_nan() {
-            return Err(Error::invalid(format!(
-                "the model `{}` gives a diffusivity that is not a number",
-                body.material.model().name
-            )));
+        if !limits.diffusivity.is_finite() {
+            let text = format!("the diffusivity is {} m^2/s", limits.diffusivity);
+            return Err(refused(body, None, &text));
         }
         Ok(limits)
     })
+}
+
+/// A material that gives no wave speed at a particle, or at some of a body.
+fn refused(body: &Body, place: Option<usize>, why: &str) -> Error {
+    let particle = place.map(|k| body.particles.id[k]);
+    let model = body.material.model().name;
+    let at = particle.map_or(String::new(), |id| format!("particle {id} of "));
+    let text = format!(
+        "the model `{model}` gives no wave speed for {at}body {}: {why}; nothing was done: check velocity, stress, state, energy and \
+         parameters",
+        body.id
+    );
+    let place = Place { body: Some(body.id), particle, ..Place::default() };
+    Error::new(Status::MaterialRefused, text).at(place)
 }
 
 /// The larger of two numbers, not a number if one of them is.

@@ -19,6 +19,13 @@ pub struct Failure {
     pub capsule: Option<Capsule>,
 }
 
+impl Failure {
+    /// Whether a point failed in the step, so that a smaller one may go.
+    pub fn is_of_a_point(&self) -> bool {
+        self.capsule.is_some()
+    }
+}
+
 impl From<Error> for Box<Failure> {
     fn from(error: Error) -> Self {
         Self::new(Failure { error, capsule: None })
@@ -29,10 +36,20 @@ impl From<Error> for Box<Failure> {
 #[derive(Debug)]
 pub struct Outcome {
     limits: Limits,
-    /// Smallest factor on the time step that a point wants [–]; infinity if none wants one below 1.
-    factor: f64,
+    wish: Option<Wish>,
     failure: Option<Box<Failure>>,
     unreliable: Option<Unreliable>,
+}
+
+/// The smallest step that a point asks for.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish {
+    /// Factor on the time step, in (0, 1) [–].
+    pub factor: f64,
+    /// Body of the point.
+    pub body: i64,
+    /// Its particle.
+    pub particle: i64,
 }
 
 /// Points that a model answered for with less accuracy than it promises.
@@ -48,7 +65,7 @@ pub struct Unreliable {
 
 impl Default for Outcome {
     fn default() -> Self {
-        Self { limits: Limits::default(), factor: f64::INFINITY, failure: None, unreliable: None }
+        Self { limits: Limits::default(), wish: None, failure: None, unreliable: None }
     }
 }
 
@@ -57,7 +74,10 @@ impl Outcome {
     pub fn merge(self, other: Self) -> Self {
         Self {
             limits: self.limits.merge(other.limits),
-            factor: self.factor.min(other.factor),
+            wish: match (self.wish, other.wish) {
+                (Some(a), Some(b)) => Some(if b.factor < a.factor { b } else { a }),
+                (a, b) => a.or(b),
+            },
             failure: self.failure.or(other.failure),
             unreliable: match (self.unreliable, other.unreliable) {
                 (Some(a), Some(b)) => Some(Unreliable { points: a.points + b.points, ..a }),
@@ -71,9 +91,15 @@ impl Outcome {
         self.unreliable
     }
 
+    /// The smallest step that a point asks for.
+    pub fn wish(&self) -> Option<Wish> {
+        self.wish
+    }
+
     /// The limits of the step after one of length `dt` [s], or the failure.
     pub fn limits(self, dt: f64) -> Result<Limits, Box<Failure>> {
-        let limits = Limits { wanted_dt: dt * self.factor, ..self.limits };
+        let wanted_dt = self.wish.map_or(f64::INFINITY, |wish| dt * wish.factor);
+        let limits = Limits { wanted_dt, ..self.limits };
         self.failure.map_or(Ok(limits), Err)
     }
 
@@ -91,7 +117,13 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     if let Some(failure) = failed_point(piece, dt) {
         return Outcome::failed(failure);
     }
-    let factor = wanted_factor(piece);
+    let wish = match smallest_wish(piece) {
+        Ok(wish) => wish,
+        Err(k) => {
+            let text = "gave a factor on the time step that is not above 0";
+            return Outcome::failed(fault(piece, (k, dt), Status::MaterialFailed, text));
+        }
+    };
     let (speed, finite) = piece.isa.dispatch(Commit(piece));
     if !finite {
         return Outcome::failed(not_finite(piece, dt));
@@ -100,7 +132,7 @@ pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> O
     let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
     piece.lap(ChunkStage::Stressed);
     let limits = Limits { speed, diffusivity, ..Limits::default() };
-    Outcome { limits, factor, failure: None, unreliable: unreliable(piece) }
+    Outcome { limits, wish, failure: None, unreliable: unreliable(piece) }
 }
 
 fn failed_point<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Option<Box<Failure>> {
@@ -122,19 +154,25 @@ fn unreliable<const D: usize>(piece: &Piece<'_, '_, D>) -> Option<Unreliable> {
     Some(Unreliable { points, body: piece.body, particle: piece.ids[piece.chunk.first + k] })
 }
 
-/// Smallest factor on the time step that a point of the chunk wants; infinity if none does.
-fn wanted_factor<const D: usize>(piece: &Piece<'_, '_, D>) -> f64 {
+/// The smallest step that a point of the chunk asks for; the place of a point whose factor makes no sense.
+fn smallest_wish<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<Option<Wish>, usize> {
     let s = &piece.scratch;
     let n = piece.chunk.len;
-    let mut factor = f64::INFINITY;
-    for f in s.dt_factor.iter().take(n).filter(|f| **f > 0.0 && **f < 1.0) {
-        factor = factor.min(*f);
+    let (mut factor, mut place) = (1.0, None);
+    for (k, f) in s.dt_factor.iter().take(n).enumerate() {
+        if *f <= 0.0 {
+            return Err(k);
+        }
+        if *f < factor {
+            (factor, place) = (*f, Some(k));
+        }
     }
     let smaller = |s: &i32| *s == LAHAR_POINT_SMALLER_STEP;
-    if s.dt_factor.is_empty() && s.status[..n].iter().fold(false, |any, s| any | smaller(s)) {
-        factor = 0.5;
+    if place.is_none() && s.status[..n].iter().fold(false, |any, s| any | smaller(s)) {
+        (factor, place) = (0.5, s.status[..n].iter().position(smaller));
     }
-    factor
+    let id = |k: usize| piece.ids[piece.chunk.first + k];
+    Ok(place.map(|k| Wish { factor, body: piece.body, particle: id(k) }))
 }
 
 /// Writes energy, stress and state into the columns. Gives the largest c + |v|, and whether everything is finite and no wave speed

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, Status};
 use crate::material::{Input, Material};
 use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
@@ -339,7 +339,10 @@ pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
                     s.state1[c * s.stride + k] = value;
                 }
             }
-            material.init_state(&mut s.batch())?;
+            material.init_state(&mut s.batch()).map_err(|error| match error.status {
+                Status::MaterialFailed => Error { status: Status::MaterialRefused, ..error },
+                _ => error,
+            })?;
             for c in 0..layout.state_components() {
                 particles.column_mut(layout.state + c)[start..start + n]
                     .copy_from_slice(&s.state1[c * s.stride..][..n]);

@@ -297,7 +297,8 @@ impl World {
         loop {
             if self.time() + dt == self.time() {
                 return Err(Error::invalid(format!(
-                    "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing",
+                    "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing, or a \
+                     material asks for smaller and smaller steps",
                     self.time()
                 )));
             }
@@ -313,9 +314,7 @@ impl World {
                     return Ok(dt);
                 }
                 Ok(limits) => (limits.wanted_dt, None),
-                Err(failure) if retries > 0 && failure.error.status.is_of_material() => {
-                    (0.5 * dt, Some(failure))
-                }
+                Err(failure) if retries > 0 && failure.is_of_a_point() => (0.5 * dt, Some(failure)),
                 Err(failure) => {
                     let mut error = self.told(*failure);
                     self.poisoned = (error.status as i32) < 0;
@@ -381,9 +380,7 @@ impl World {
 
     /// A step that was taken back, and will not be repeated.
     fn refused(&self, dt: f64, wanted: f64, why: Option<Error>) -> Error {
-        let why = why.unwrap_or_else(|| {
-            Error::invalid("a material asks for a smaller step").at(on!(&self, s => s.place()))
-        });
+        let why = why.unwrap_or_else(|| on!(&self, s => s.wished()));
         let text = format!(
             "the step of {dt:e} s was taken back, nothing was done: {}; take {wanted:e} s or less, or find the cause",
             why.message
@@ -442,18 +439,19 @@ impl World {
 
     /// Whether particles are sorted and the grid is built.
     pub fn is_fresh(&self) -> bool {
-        on!(&self, s => !s.regroup)
+        on!(&self, s => !s.regroup && !s.stale)
     }
 
     /// Sorts particles that came or went into blocks, and maps mass and momentum to the grid.
     pub fn refresh(&mut self) -> Result<()> {
-        on!(&mut self, s => if s.regroup {
+        on!(&mut self, s => if s.regroup || s.stale {
             let context = s.context.clone();
             context.install(|| {
                 locate(&mut **s)?;
                 particles_to_grid(&mut **s);
                 apply_tractions(&mut **s, 0.0);
                 update_grid(&mut **s, 0.0);
+                s.stale = false;
                 Ok(())
             })
         } else {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::boundary::Wall;
 use crate::context::Context;
-use crate::error::{Place, Result};
+use crate::error::{Error, Place, Result};
 use crate::grid::key::split_node;
 use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
@@ -16,8 +16,9 @@ use crate::step::average_dilation::Patches;
 use crate::step::filter_velocities::Filtered;
 use crate::step::grid_to_particles::GatherKernel;
 use crate::step::locate::Sorting;
+use crate::step::retry::Start;
 use crate::step::time_step::Limits;
-use crate::step::update_stress::{Outcome, Unreliable};
+use crate::step::update_stress::{Outcome, Unreliable, Wish};
 use crate::transfer::TransferKind;
 
 use super::conditions::Conditions;
@@ -177,8 +178,8 @@ pub struct State<const D: usize> {
     pub filtered: Vec<Filtered>,
     /// Sums of F-bar.
     pub patches: Patches,
-    /// Columns of each body at the start of the step, where the host allows retries.
-    pub start: Vec<Vec<f64>>,
+    /// What a step started from, where the host allows retries.
+    pub start: Start,
     /// Buffers of the sort.
     pub sorting: Sorting<D>,
     /// Particles came or went since the last sort.
@@ -189,6 +190,10 @@ pub struct State<const D: usize> {
     pub parallel: bool,
     /// What the last step's stress updates said of their accuracy.
     pub unreliable: Option<Unreliable>,
+    /// The smallest step that a point asked for in the last step.
+    pub wish: Option<Wish>,
+    /// The grid holds a step that was taken back.
+    pub stale: bool,
     /// Limits of the next time step; None if the host changed something since they were found.
     pub limits: Option<Limits>,
     /// Time [s].
@@ -216,12 +221,14 @@ impl<const D: usize> State<D> {
             impulses: Vec::new(),
             filtered: Vec::new(),
             patches: Patches::default(),
-            start: Vec::new(),
+            start: Start::default(),
             sorting: Sorting::default(),
             regroup: true,
             rescan: true,
             parallel: false,
             unreliable: None,
+            wish: None,
+            stale: false,
             limits: None,
             time: 0.0,
             step_count: 0,
@@ -233,6 +240,18 @@ impl<const D: usize> State<D> {
             world.grid.set_owners(&blocks, false)?;
         }
         Ok(world)
+    }
+
+    /// A point asked for a smaller step than that which was made.
+    pub fn wished(&self) -> Error {
+        let text = "a material asks for a smaller step";
+        let Some(Wish { factor, body, particle }) = self.wish else { return Error::invalid(text) };
+        let model = self.body(body).map_or("?", |b| b.material.model().name);
+        let text = format!(
+            "{text}: `{model}` for particle {particle} of body {body}, by the factor {factor:e}"
+        );
+        let place = Place { body: Some(body), particle: Some(particle), ..self.place() };
+        Error::invalid(text).at(place)
     }
 
     /// Origin, spacing and the two figures of the shape function.

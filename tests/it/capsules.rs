@@ -277,6 +277,32 @@ fn a_bad_capsule_is_refused_with_its_reason() {
 }
 
 #[test]
+fn a_model_that_gives_no_wave_speed_or_no_sane_factor_stops_the_world_with_its_reason() {
+    for (name, status, poisoned, texts) in [
+        (
+            "no_wave_speed",
+            Status::MaterialRefused,
+            false,
+            &["no wave speed for particle", "failed"],
+        ),
+        ("zero_factor", Status::MaterialFailed, true, &["factor on the time step", "not above 0"]),
+    ] {
+        let context = Context::new(Some(1)).unwrap();
+        context.load_plugin(&bad_plugin(name)).unwrap();
+        let material = Material::new(&context, "minimal", &[]).unwrap();
+        let mut world =
+            world(&context, &Options { dimension: 2, spacing: 0.1, ..Options::default() });
+        fill(&mut world, &material, &a_box([0.0; 3], [0.2, 0.2, 0.0]), 1000.0, [0.0; 3]);
+        let error = world.step(None).map(|_| ()).unwrap_err();
+        assert_eq!((error.status, world.is_poisoned()), (status, poisoned), "{error}");
+        for text in texts {
+            assert!(error.message.contains(text), "`{text}` is not in: {error}");
+        }
+        assert_eq!(error.place.body, Some(0));
+    }
+}
+
+#[test]
 fn a_host_in_c_asks_for_capsules() {
     let folder = scratch_folder();
     let mut host = Command::new(compiler::program(&repository("tests/c/capsules.c")));

@@ -95,6 +95,8 @@ fn every_bad_plugin_is_refused_with_its_reason() {
         ("duplicate_models", invalid, &["two models are named `minimal`"]),
         ("bad_name", invalid, &["expected ASCII letters", "`name`"]),
         ("null_name", invalid, &["expected a text for `name`, got NULL"]),
+        ("reserved_state", invalid, &["`stress` has the name of a field", "choose another"]),
+        ("newer_output", invalid, &["expected outputs among", "made for a newer lahar"]),
         ("needs_newer", Status::PluginAbi, &["model `minimal`", "minor 7", "speaks 1.0"]),
         ("refuses_old_host", Status::PluginRefused, &["needs an engine of minor 7"]),
         ("undeclared_tangent", invalid, &["LAHAR_CAPABILITY_TANGENT is declared", "not offered"]),
@@ -145,6 +147,12 @@ fn a_library_that_is_no_plugin_is_offered_to_the_adapter() {
     let error = refusal(&bad_plugin("not_a_plugin"));
     let texts = &["not a lahar plugin", "if it holds an Abaqus UMAT, put liblahar_umat.so into"];
     expect::<()>(Err(error), Status::PluginInvalid, texts);
+}
+
+#[test]
+fn the_adapter_itself_is_told_from_what_it_adapts() {
+    let texts = &["this is an adapter", "give the library with the UMAT"];
+    expect::<()>(Err(refusal(&plugin_path("umat"))), Status::PluginInvalid, texts);
 }
 
 #[test]
