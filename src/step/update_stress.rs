@@ -33,7 +33,7 @@ impl From<Error> for Box<Failure> {
 }
 
 /// What the stress updates of a step lead to.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Outcome {
     limits: Limits,
     wish: Option<Wish>,
@@ -61,12 +61,6 @@ pub struct Unreliable {
     pub body: i64,
     /// Particle of the first.
     pub particle: i64,
-}
-
-impl Default for Outcome {
-    fn default() -> Self {
-        Self { limits: Limits::default(), wish: None, failure: None, unreliable: None }
-    }
 }
 
 impl Outcome {

@@ -59,7 +59,7 @@ pub fn init_state(instance: &Instance, p: &mut Points<'_>) -> Result<(), String>
             routine,
             statev: vec![UNTOUCHED; n + BEHIND],
             coords: components(|axis| p.inputs[POSITION + axis][k]),
-            numbers: [n as i32, 3, p.inputs[PARTICLE_ID][k] as i32 + 1, 1, 1, 1],
+            numbers: [n as i32, 3, (p.inputs[PARTICLE_ID][k] as i32).saturating_add(1), 1, 1, 1],
         };
         for (value, place) in data.statev.iter_mut().zip(states) {
             *value = place.factor * p.state1[place.component * p.stride + k];

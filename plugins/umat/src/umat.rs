@@ -32,7 +32,9 @@ macro_rules! umat_type {
 }
 
 /// STATEV(NSTATV + 1) and what follows: a routine that writes there was built for more state variables.
-pub const BEHIND: usize = 4;
+pub const BEHIND: usize = 1024;
+/// How many of them are looked at after each call; all are after each batch.
+const LOOKED_AT: usize = 4;
 /// What stands there.
 pub const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
 
@@ -85,9 +87,6 @@ struct Arguments {
     /// How vector arithmetic is to be after every eight calls.
     control: u32,
 }
-
-// SAFETY: the address of a routine, which is called on the thread that has set it only.
-unsafe impl Send for Arguments {}
 
 thread_local! {
     static ARGUMENTS: RefCell<Arguments> = const { RefCell::new(Arguments::NEW) };
@@ -254,6 +253,7 @@ fn all(
         start.fill(instance.adapted, p, call, k);
         left = left.or(eight(instance, functions, a, p, (call, k), &start)?);
     }
+    a.look_behind(instance, BEHIND)?;
     Ok(left)
 }
 
@@ -419,7 +419,7 @@ impl Arguments {
             self.coords[axis] = p.inputs[POSITION + axis][at];
         }
         (self.pnewdt, self.celent) = (1e36, p.inputs[ELEMENT_LENGTH][at]);
-        self.noel = p.inputs[PARTICLE_ID][at] as i32 + 1;
+        self.noel = (p.inputs[PARTICLE_ID][at] as i32).saturating_add(1);
         (self.npt, self.layer, self.kspt) = (1, 1, 1);
         self.kstep = [1, 0, 1, 0]; // of NLGEOM
         self.kinc = i32::try_from(p.step.max(0).saturating_add(1)).unwrap_or(i32::MAX);
@@ -446,15 +446,23 @@ impl Arguments {
                 }
             }
         };
-        let (states, behind) = self.statev.split_at(instance.adapted.states.len());
-        if behind.iter().fold(0, |all, x| all | (x.to_bits() ^ UNTOUCHED.to_bits())) != 0 {
-            return Err(self.wrote_behind(instance));
-        }
+        self.look_behind(instance, LOOKED_AT)?;
+        let states = &self.statev[..instance.adapted.states.len()];
         // By their bits: arithmetic on the results would wait for the routine.
         const INFINITE: u64 = f64::INFINITY.to_bits();
         let finite = |all, x: &f64| all & (x.to_bits() & INFINITE != INFINITE);
         let finite = self.stress.iter().fold(true, finite) & states.iter().fold(true, finite);
         Ok(Outcome { left: left != 0, finite, pnewdt: self.pnewdt })
+    }
+
+    /// An error if the routine wrote into the first `count` values behind its state variables.
+    #[inline(always)]
+    fn look_behind(&mut self, instance: &Instance, count: usize) -> Result<(), String> {
+        let behind = &self.statev[instance.adapted.states.len()..][..count];
+        if behind.iter().fold(0, |all, x| all | (x.to_bits() ^ UNTOUCHED.to_bits())) != 0 {
+            return Err(self.wrote_behind(instance));
+        }
+        Ok(())
     }
 
     #[cold]
@@ -503,6 +511,9 @@ fn judge(p: &mut Points<'_>, at: usize, pnewdt: f64) {
 /// A point that failed ends with the state of its start.
 #[cold]
 fn fail(adapted: &Adapted, p: &mut Points<'_>, at: usize, update: bool) {
+    if let Some(status) = p.status.get_mut(at) {
+        *status = LAHAR_POINT_FAILED;
+    }
     if !update {
         return;
     }
@@ -518,9 +529,6 @@ fn fail(adapted: &Adapted, p: &mut Points<'_>, at: usize, update: bool) {
     }
     if let Some(factor) = p.dt_factor.get_mut(at) {
         *factor = 1.0;
-    }
-    if let Some(status) = p.status.get_mut(at) {
-        *status = LAHAR_POINT_FAILED;
     }
 }
 

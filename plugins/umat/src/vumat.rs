@@ -75,9 +75,6 @@ struct Block {
     new: Vec<[Lane; 9]>,
 }
 
-// SAFETY: the address of a routine, which is called on the thread that has set it only.
-unsafe impl Send for Block {}
-
 thread_local! {
     static SPACE: RefCell<Block> = const { RefCell::new(Block::NEW) };
 }
@@ -302,7 +299,7 @@ impl Block {
     fn fill_scalars(&mut self, adapted: &Adapted, p: &Points<'_>, first: usize, m: usize) {
         let points = first..first + m;
         for (k, id) in p.inputs[PARTICLE_ID][points.clone()].iter().enumerate() {
-            self.jblock[4 + k] = *id as i32 + 1;
+            self.jblock[4 + k] = (*id as i32).saturating_add(1);
         }
         for axis in 0..3 {
             self.coord_mp[axis * m..][..m]

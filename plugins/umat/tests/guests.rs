@@ -60,15 +60,20 @@ fn xit_ends_the_call_and_fails_the_point_and_its_message_reaches_the_log() {
     assert_eq!(log[0], (LAHAR_PLUGIN_LOG_WARNING, "element 17 of RUDE: 2.5".into()));
     let last = &log.last().expect("a line").1;
     assert!(last.contains("XIT at particle 16"), "{last}");
+    // Nor is there a wave speed, which a time step could be taken from.
+    m.wave_speed().expect("a wave speed");
+    assert_eq!(m.status[..3], [LAHAR_POINT_FAILED; 3]);
 }
 
 #[test]
 fn a_state_variable_too_many_is_found() {
-    let (mut m, path) = rude(2.0, "serial", 3);
-    pulled(&mut m);
-    let error = m.update().expect_err("STATEV(2)");
-    assert!(error.contains("wrote behind STATEV(1)") && error.contains("`states`"), "{error}");
-    assert!(error.contains(path.with_extension("json").to_str().expect("UTF-8")), "{error}");
+    for place in [2.0, 4.0] {
+        let (mut m, path) = rude(place, "serial", 3);
+        pulled(&mut m);
+        let error = m.update().expect_err("STATEV(2) or STATEV(101)");
+        assert!(error.contains("wrote behind STATEV(1)") && error.contains("`states`"), "{error}");
+        assert!(error.contains(path.with_extension("json").to_str().expect("UTF-8")), "{error}");
+    }
 }
 
 #[test]

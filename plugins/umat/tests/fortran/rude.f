@@ -25,6 +25,7 @@ C     remembers calls, prints, wants half the step, counts its calls into STATEV
           STRESS(1) = -1.D30
         END IF
         IF (PROPS(3).EQ.2.D0) STATEV(NSTATV+1) = 1.D0
+        IF (PROPS(3).EQ.4.D0) STATEV(NSTATV+100) = 1.D0
         IF (PROPS(3).EQ.3.D0) STRESS(1) = STRESS(1)/0.D0*0.D0
       END IF
       A = PROPS(1)
