@@ -127,6 +127,11 @@ impl Driver {
         Ok(driver)
     }
 
+    /// Number of points.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
     /// Sets the strain increment of point `k`: xx, yy, zz, xy, yz, zx [-].
     pub fn set_strain_increment(&mut self, k: usize, value: [f64; 6]) {
         put(self.kinematics.get_mut(), self.stride, k, &value);

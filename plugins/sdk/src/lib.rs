@@ -12,7 +12,8 @@
 //! batch with the widest vector instructions of the processor ([`simd`]).
 //!
 //! A panic in a model does not leave the plugin: the function that was running returns `LAHAR_PLUGIN_ERROR` with the
-//! text of the panic. [`Driver`] runs a model through its table without an engine: element tests are written with it.
+//! text of the panic. [`Driver`] runs a model through its table without an engine: element tests are written with
+//! it and with [`testing`].
 
 mod batch;
 mod drive;
@@ -29,6 +30,7 @@ pub mod root;
 pub mod simd;
 mod table;
 pub mod tensor;
+pub mod testing;
 mod wall;
 
 pub use batch::{Batch, Columns, MAX_INPUTS, PointStatus};
