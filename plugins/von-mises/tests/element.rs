@@ -2,8 +2,9 @@
 #![forbid(unsafe_code)]
 
 use lahar_model_von_mises::VonMises;
-use lahar_plugin::abi::{LAHAR_POINT_FAILED, LAHAR_POINT_OK};
-use lahar_plugin::tensor::{contract, deviator, trace};
+use lahar_plugin::abi::LAHAR_POINT_OK;
+use lahar_plugin::tensor::{contract, trace};
+use lahar_plugin::testing::{Random, invariants, with};
 use lahar_plugin::{Driver, ModelTable, elastic};
 
 const E: f64 = 200.0e9;
@@ -17,10 +18,8 @@ const SOFTENING: &[(&str, f64)] =
     &[("voce_stress", -200.0e6), ("voce_rate", 40.0), ("residual_ratio", 0.3)];
 
 fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
-    let mut all = vec![("youngs_modulus", E), ("poissons_ratio", NU), ("yield_stress", YIELD)];
-    all.retain(|(known, _)| named.iter().all(|(name, _)| name != known));
-    all.extend_from_slice(named);
-    Driver::new(ModelTable::of::<VonMises>().desc(), &all, n)
+    let usual = [("youngs_modulus", E), ("poissons_ratio", NU), ("yield_stress", YIELD)];
+    Driver::new(ModelTable::of::<VonMises>().desc(), &with(&usual, named), n)
 }
 
 fn driver(named: &[(&str, f64)], n: usize) -> Driver {
@@ -39,26 +38,7 @@ fn yield_stress(named: &[(&str, f64)], kappa: f64) -> f64 {
 }
 
 fn equivalent(stress: [f64; 6]) -> f64 {
-    let s = deviator(stress);
-    (1.5 * contract(s, s)).sqrt()
-}
-
-/// Numbers from 0 to 1.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn tensor(&mut self, size: f64) -> [f64; 6] {
-        std::array::from_fn(|_| self.between(-size, size))
-    }
+    invariants(stress).1
 }
 
 /// One step of uniaxial stress along x with the axial strain `axial`: Newton's method with the model's own tangent
@@ -238,7 +218,7 @@ fn random_parameters(random: &mut Random) -> Vec<(&'static str, f64)> {
 
 #[test]
 fn every_step_ends_on_the_yield_stress_with_the_flow_of_the_trial() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut plastic = 0;
     for _ in 0..300 {
         let named = random_parameters(&mut random);
@@ -248,7 +228,7 @@ fn every_step_ends_on_the_yield_stress_with_the_flow_of_the_trial() {
         for _ in 0..40 {
             for k in 0..8 {
                 let size = sigma_0 / g * 10.0_f64.powf(random.between(-2.0, 1.0));
-                d.set_strain_increment(k, random.tensor(size));
+                d.set_strain_increment(k, random.symmetric(size));
             }
             let start: Vec<[f64; 6]> = (0..8).map(|k| d.stress0(k)).collect();
             d.update(1.0).unwrap();
@@ -273,13 +253,13 @@ fn every_step_ends_on_the_yield_stress_with_the_flow_of_the_trial() {
 
 #[test]
 fn the_plastic_strain_is_what_the_stress_lacks_of_the_trial() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..2000 {
         let named = random_parameters(&mut random);
         let (e, nu, sigma_0) = (named[0].1, named[1].1, named[2].1);
         let g = e / (2.0 * (1.0 + nu));
         let mut d = driver(&named, 1);
-        let strain = random.tensor(5.0 * sigma_0 / g);
+        let strain = random.symmetric(5.0 * sigma_0 / g);
         d.set_state(0, 0, random.between(0.0, 0.1));
         d.set_strain_increment(0, strain);
         d.update(1.0).unwrap();
@@ -292,36 +272,21 @@ fn the_plastic_strain_is_what_the_stress_lacks_of_the_trial() {
 
 /// Largest difference of the tangent of point 0 from central differences of the stress, over the largest component.
 fn tangent_error(d: &mut Driver, strain: [f64; 6], size: f64) -> f64 {
-    d.set_strain_increment(0, strain);
-    let tangent = d.tangent(0, 1.0).unwrap();
-    let mut error = 0.0_f64;
-    for j in 0..6 {
-        let ends = [1.0, -1.0].map(|sign| {
-            let mut moved = strain;
-            moved[j] += sign * size;
-            d.set_strain_increment(0, moved);
-            d.update(1.0).unwrap();
-            d.stress1(0)
-        });
-        for i in 0..6 {
-            let difference = (ends[0][i] - ends[1][i]) / (2.0 * size);
-            error = error.max((tangent[i][j] - difference).abs());
-        }
-    }
-    error / tangent.as_flattened().iter().fold(0.0_f64, |m, c| m.max(c.abs()))
+    let found = d.compare_tangent(0, strain, size, 1.0).unwrap();
+    found.error() / found.size()
 }
 
 #[test]
 fn tangents_are_the_differences_of_the_stress() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for named in [&[], LINEAR, VOCE, SOFTENING] {
         for _ in 0..50 {
             let mut d = driver(named, 1);
-            d.set_stress(0, random.tensor(1e8));
+            d.set_stress(0, random.symmetric(1e8));
             d.set_state(0, 0, random.between(0.0, 0.05));
             for size in [1e-4, 5e-3] {
                 // Differences of second order: (1e-5 of the strain)², and round-off over it.
-                let error = tangent_error(&mut d, random.tensor(size), 1e-5 * size);
+                let error = tangent_error(&mut d, random.symmetric(size), 1e-5 * size);
                 assert!(error < 1e-7, "{named:?}, strain {size}: {error:e}");
             }
         }
@@ -407,19 +372,17 @@ fn a_point_that_is_not_a_number_or_huge_fails_alone() {
         d.set_state(6, 0, f64::NAN);
         d.set_input(0, 7, 0.0);
         d.update(1.0).unwrap();
-        for k in 0..9 {
-            let expected = if (1..8).contains(&k) { LAHAR_POINT_FAILED } else { LAHAR_POINT_OK };
-            assert_eq!(d.status_of(k), expected, "point {k} of {named:?}");
-        }
+        assert_eq!(d.failed_points().unwrap(), (1..8).collect::<Vec<_>>(), "{named:?}");
     }
 }
 
 #[test]
 fn a_batch_gives_the_bits_of_single_points() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for named in [LINEAR, VOCE] {
         let mut d = driver(named, 21);
-        let points: Vec<_> = (0..21).map(|_| (random.tensor(3e8), random.tensor(4e-3))).collect();
+        let points: Vec<_> =
+            (0..21).map(|_| (random.symmetric(3e8), random.symmetric(4e-3))).collect();
         for (k, (stress, strain)) in points.iter().enumerate() {
             d.set_stress(k, *stress);
             d.set_strain_increment(k, *strain);

@@ -3,7 +3,8 @@
 
 use lahar_model_modified_cam_clay::ModifiedCamClay;
 use lahar_plugin::abi::{LAHAR_POINT_FAILED, LAHAR_POINT_OK};
-use lahar_plugin::tensor::{contract, deviator, trace};
+pub use lahar_plugin::testing::invariants;
+use lahar_plugin::testing::with;
 use lahar_plugin::{Driver, ModelTable};
 
 /// Slope of the critical state line of the tests [-].
@@ -11,18 +12,14 @@ pub const M: f64 = 1.2;
 
 /// λ = 0.2, κ = 0.04, M = 1.2; other values as named.
 pub fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
-    let mut all = vec![
+    let usual = [
         ("critical_stress_ratio", M),
         ("compression_index", 0.2),
         ("swelling_index", 0.04),
         ("poissons_ratio", 0.3),
         ("reference_void_ratio", 2.0),
     ];
-    for (name, value) in named {
-        all.retain(|(known, _)| known != name);
-        all.push((name, *value));
-    }
-    Driver::new(ModelTable::of::<ModifiedCamClay>().desc(), &all, n)
+    Driver::new(ModelTable::of::<ModifiedCamClay>().desc(), &with(&usual, named), n)
 }
 
 /// The same.
@@ -38,12 +35,6 @@ pub fn consolidated(named: &[(&str, f64)], p0: f64, n: usize) -> Driver {
     }
     d.init_state().unwrap();
     d
-}
-
-/// Pressure and q [Pa].
-pub fn invariants(stress: [f64; 6]) -> (f64, f64) {
-    let s = deviator(stress);
-    (-trace(stress) / 3.0, (1.5 * contract(s, s)).sqrt())
 }
 
 /// The yield function over p_c².
@@ -76,13 +67,4 @@ pub fn confined_step(d: &mut Driver, axial: f64, confinement: f64) {
         lateral -= residual / (tangent[0][0] + tangent[0][1]);
     }
     panic!("the lateral stress is not reached");
-}
-
-/// Numbers between -0.5 and 0.5.
-pub fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut seed = seed;
-    move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    }
 }

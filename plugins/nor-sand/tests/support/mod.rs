@@ -3,7 +3,9 @@
 
 use lahar_model_nor_sand::NorSand;
 use lahar_plugin::abi::LAHAR_POINT_OK;
-use lahar_plugin::tensor::{contract, deviator, trace};
+use lahar_plugin::tensor::deviator;
+pub use lahar_plugin::testing::invariants;
+use lahar_plugin::testing::with;
 use lahar_plugin::{Driver, ModelTable};
 
 /// Constants of the tests.
@@ -16,7 +18,7 @@ pub const H: f64 = 150.0;
 
 /// The typical sand; other values as named.
 pub fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
-    let mut all = vec![
+    let usual = [
         ("critical_stress_ratio", M),
         ("critical_void_ratio", GAMMA),
         ("critical_state_slope", LAMBDA),
@@ -24,11 +26,7 @@ pub fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
         ("dilatancy_slope", CHI),
         ("hardening_modulus", H),
     ];
-    for (name, value) in named {
-        all.retain(|(known, _)| known != name);
-        all.push((name, *value));
-    }
-    Driver::typical(ModelTable::of::<NorSand>().desc(), &all, n)
+    Driver::typical(ModelTable::of::<NorSand>().desc(), &with(&usual, named), n)
 }
 
 /// The same.
@@ -46,12 +44,6 @@ pub fn consolidated(named: &[(&str, f64)], p0: f64, psi: f64, n: usize) -> Drive
     }
     d.init_state().unwrap();
     d
-}
-
-/// Pressure and q [Pa].
-pub fn invariants(stress: [f64; 6]) -> (f64, f64) {
-    let s = deviator(stress);
-    (-trace(stress) / 3.0, (1.5 * contract(s, s)).sqrt())
 }
 
 /// Void ratio of the critical state.
@@ -117,13 +109,4 @@ pub fn confined_step(d: &mut Driver, axial: f64, confinement: f64) -> [f64; 6] {
         lateral -= residual / (tangent[0][0] + tangent[0][1]);
     }
     panic!("the lateral stress is not reached");
-}
-
-/// Numbers between -0.5 and 0.5.
-pub fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut seed = seed;
-    move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    }
 }
