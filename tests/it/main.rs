@@ -19,6 +19,7 @@ mod host;
 mod invariants;
 mod kernels;
 mod loading;
+mod negotiation;
 mod objectivity;
 mod order;
 mod own_material;

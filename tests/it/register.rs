@@ -12,14 +12,14 @@ fn context() -> Arc<Context> {
     Context::new(Some(1)).unwrap()
 }
 
-/// A copy of linear elasticity's tables, spoiled.
-fn spoiled(
+/// A copy of linear elasticity's tables, with its first model only, spoiled.
+pub fn spoiled(
     spoil: impl FnOnce(&mut lahar_plugin_desc, &mut lahar_model_desc),
 ) -> &'static lahar_plugin_desc {
     let mut plugin = *lahar_model_linear_elastic::PLUGIN.desc();
-    // SAFETY: the table of a plugin that the SDK made holds one pointer to its model's table.
+    // SAFETY: the table of a plugin that the SDK made holds a pointer to the table of each of its models.
     let mut model = unsafe { **plugin.models };
-    plugin.models = ptr::null();
+    (plugin.model_count, plugin.models) = (1, ptr::null());
     spoil(&mut plugin, &mut model);
     if plugin.models.is_null() {
         let model: &'static lahar_model_desc = Box::leak(Box::new(model));
