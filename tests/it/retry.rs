@@ -2,13 +2,16 @@
 
 use crate::setup::{a_box, fill, read, world};
 use crate::support::bad_plugin;
+use lahar::boundary::{BoxRegion, PrescribedVelocity, Table, Traction, Wall, WallKind};
 use lahar::context::Context;
 use lahar::error::Status;
 use lahar::material::Material;
 use lahar::step::StepOrder;
 use lahar::world::World;
+use lahar::world::hooks::{HookArguments, HookPoint};
 use lahar::world::options::Options;
 use std::sync::{Arc, Mutex};
+use std::thread;
 
 /// A block that the model of a bad plugin fills, in a world that lets steps be repeated. The stable step is about 4e-3 s.
 fn block(plugin: &str, retries: i32, order: StepOrder) -> World {
@@ -143,4 +146,83 @@ fn the_number_of_retries_is_checked() {
         assert_eq!(error.status, Status::InvalidArgument);
         assert!(error.message.contains("retries must be 0 (none) to 20"), "{error}");
     }
+}
+
+/// A block on a floor, pushed from the left and loaded on top, and its forces: of the floor, of the push, of the load.
+fn held_block(plugin: &str, retries: i32, order: StepOrder) -> World {
+    let mut world = block(plugin, retries, order);
+    let kind = WallKind::Slip;
+    world.add_wall(&Wall { axis: 1, side: 1, position: 0.0, kind, friction: 0.0 }).unwrap();
+    let region = BoxRegion { min: [-1.0; 3], max: [0.3, 9.0, 1.0] };
+    let velocity = Table::constant([0.2, 0.0, 0.0]);
+    world.add_prescribed_velocity(PrescribedVelocity { region, components: 1, velocity }).unwrap();
+    let region = BoxRegion { min: [0.0, 3.95, -1.0], max: [4.0, 4.0, 1.0] };
+    let traction = Table::new("a load", &[0.0, 1.0], &[[0.0; 3], [0.0, -100.0, 0.0]]).unwrap();
+    world.add_traction(Traction { body: 0, region, axis: 1, side: 1, traction }).unwrap();
+    world
+}
+
+fn forces(world: &World) -> [[f64; 3]; 3] {
+    [
+        world.wall_reaction(0).unwrap(),
+        world.prescribed_velocity_reaction(0).unwrap(),
+        world.traction_force(0).unwrap().2,
+    ]
+}
+
+#[test]
+fn a_step_that_is_repeated_leaves_the_forces_of_the_step_that_was_made() {
+    for order in [StepOrder::Usl, StepOrder::Musl, StepOrder::Usf] {
+        let mut repeated = held_block("wants_less", 3, order);
+        let mut plain = held_block("wants_less", 0, order);
+        for _ in 0..5 {
+            let dt = repeated.step(None).unwrap();
+            plain.step(Some(dt)).unwrap();
+            assert_eq!(forces(&repeated), forces(&plain), "{order:?}");
+        }
+        assert_eq!(everything(&repeated), everything(&plain), "{order:?}");
+    }
+}
+
+#[test]
+fn hooks_run_once_in_each_attempt_with_its_length() {
+    let mut world = block("wants_less", 3, StepOrder::Musl);
+    let calls = Arc::new(Mutex::new(Vec::new()));
+    let points =
+        [HookPoint::Start, HookPoint::AfterScatter, HookPoint::AfterBoundaries, HookPoint::End];
+    for point in points {
+        let calls = Arc::clone(&calls);
+        let hook = move |a: HookArguments<'_>| {
+            calls.lock().unwrap().push((point, a.time, a.dt));
+        };
+        world.set_hook(point, Some(Box::new(hook)));
+    }
+    let stable = world.stable_dt().unwrap();
+    let dt = world.step(None).unwrap();
+    assert!(dt < stable);
+    let expected: Vec<_> =
+        [stable, dt].iter().flat_map(|dt| points.map(|point| (point, 0.0, *dt))).collect();
+    assert_eq!(*calls.lock().unwrap(), expected);
+}
+
+#[test]
+fn exclusive_calls_of_a_model_that_is_not_thread_safe_do_not_overlap_its_steps() {
+    let context = Context::new(Some(2)).unwrap();
+    let mut world = block_in(&context, "alone", 0, StepOrder::Musl);
+    thread::scope(|scope| {
+        let steps = scope.spawn(|| {
+            for _ in 0..20 {
+                world.step(Some(1e-3)).unwrap();
+            }
+        });
+        let mut made = 0;
+        while !steps.is_finished() {
+            drop(Material::new(&context, "minimal", &[]).unwrap());
+            made += 1;
+        }
+        assert!(made >= 20, "{made} materials are too few to meet a step");
+        steps.join().unwrap();
+    });
+    // The model refuses values once two of its calls have overlapped.
+    Material::new(&context, "minimal", &[]).unwrap();
 }
