@@ -226,3 +226,19 @@ fn exclusive_calls_of_a_model_that_is_not_thread_safe_do_not_overlap_its_steps()
     // The model refuses values once two of its calls have overlapped.
     Material::new(&context, "minimal", &[]).unwrap();
 }
+
+#[test]
+fn a_step_that_is_refused_leaves_the_forces_of_the_step_before() {
+    for order in ORDERS {
+        let mut world = held_block("fails_in_large_steps", 3, order);
+        (0..3).for_each(|_| assert_eq!(world.step(Some(9e-4)).unwrap(), 9e-4));
+        let before = forces(&world);
+        assert!(before.iter().all(|f| f.iter().any(|f| *f != 0.0)), "{before:?}");
+        let error = world.step(Some(3e-3)).map(|_| ()).unwrap_err();
+        assert_eq!(error.status, Status::SmallerStep, "{order:?}");
+        assert_eq!(forces(&world), before, "{order:?}");
+        // What comes next changes them.
+        world.step(Some(9e-4)).unwrap();
+        assert_ne!(forces(&world), before, "{order:?}");
+    }
+}
