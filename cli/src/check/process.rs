@@ -2,11 +2,13 @@
 
 use super::report::{Event, read};
 use crate::plugin::Choice;
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// How a child ended.
 pub enum Ending {
@@ -24,17 +26,20 @@ pub struct Run {
     pub ending: Ending,
 }
 
-/// A folder for the reports and outputs of children; it goes with this value.
+/// A folder of this user alone for the reports and outputs of children; it goes with this value.
 pub struct Workshop {
-    folder: PathBuf,
+    folder: TempDir,
     limit: Duration,
     runs: usize,
 }
 
 impl Workshop {
     pub fn new(limit: Duration) -> Result<Self, String> {
-        let folder = std::env::temp_dir().join(format!("lahar-check-{}", std::process::id()));
-        fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix("lahar-check-").permissions(Permissions::from_mode(0o700));
+        let folder = builder
+            .tempdir()
+            .map_err(|e| format!("a folder in {}: {e}", std::env::temp_dir().display()))?;
         Ok(Self { folder, limit, runs: 0 })
     }
 
@@ -42,7 +47,7 @@ impl Workshop {
     pub fn run(&mut self, choice: &Choice, rules: &[&str], checked: bool) -> Result<Run, String> {
         let number = self.runs;
         self.runs += 1;
-        let file = |name: &str| self.folder.join(format!("{number}.{name}"));
+        let file = |name: &str| self.folder.path().join(format!("{number}.{name}"));
         let report = file("report");
         let output = |name: &str| {
             File::create(file(name)).map_err(|e| format!("{}: {e}", file(name).display()))
@@ -95,8 +100,8 @@ impl Workshop {
         let mut first = None;
         for number in 0..self.runs {
             for name in ["stdout", "stderr"] {
-                let content =
-                    fs::read(self.folder.join(format!("{number}.{name}"))).unwrap_or_default();
+                let content = fs::read(self.folder.path().join(format!("{number}.{name}")))
+                    .unwrap_or_default();
                 bytes += content.len() as u64;
                 let text = String::from_utf8_lossy(&content).into_owned();
                 let line = text.lines().find(|l| !l.trim().is_empty()).map(str::to_string);
@@ -104,12 +109,6 @@ impl Workshop {
             }
         }
         (bytes > 0).then(|| (first.unwrap_or_default(), bytes))
-    }
-}
-
-impl Drop for Workshop {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.folder);
     }
 }
 

@@ -1,9 +1,11 @@
 //! Builds a library that the adapter can load of Fortran and C sources: what `lahar plugin umat-build` does.
 
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::{env, fs, process};
+use std::{env, process};
+use tempfile::TempDir;
 
 const ABA_PARAM: &str = include_str!("../share/ABA_PARAM.INC");
 const VABA_PARAM: &str = include_str!("../share/vaba_param.inc");
@@ -65,33 +67,32 @@ pub struct Built {
     pub notes: Vec<String>,
 }
 
-/// A folder of files for the compiler, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Result<Self, String> {
-        static NUMBER: AtomicUsize = AtomicUsize::new(0);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let folder = env::temp_dir().join(format!("lahar-umat-build-{}-{number}", process::id()));
-        let failed = |e| format!("cannot write into {}: {e}; set TMPDIR", folder.display());
-        fs::create_dir_all(&folder).map_err(failed)?;
-        let files = [("utilities.c", UTILITIES), ("exports.map", EXPORTS)];
-        for (name, text) in INCLUDES.into_iter().chain(files) {
-            fs::write(folder.join(name), text).map_err(failed)?;
-        }
-        Ok(Self(folder))
-    }
+/// A new folder of this user alone among the temporary files, with a name that others cannot foresee; removed when dropped.
+pub(crate) fn private_folder() -> Result<TempDir, String> {
+    let prefix = format!("lahar-umat-{}-", process::id());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).permissions(Permissions::from_mode(0o700));
+    builder.tempdir().map_err(|e| {
+        format!("cannot make a folder in {}: {e}; set TMPDIR", env::temp_dir().display())
+    })
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+/// A folder of files for the compiler.
+fn folder() -> Result<TempDir, String> {
+    let folder = private_folder()?;
+    let files = [("utilities.c", UTILITIES), ("exports.map", EXPORTS)];
+    for (name, text) in INCLUDES.into_iter().chain(files) {
+        fs::write(folder.path().join(name), text).map_err(|e| {
+            format!("cannot write into {}: {e}; set TMPDIR", folder.path().display())
+        })?;
     }
+    Ok(folder)
 }
 
 /// Compiles and links the sources with the utility routines. Errors tell what the compiler said and what to do.
 pub fn build(order: &Order) -> Result<Built, String> {
-    let folder = Folder::new()?;
+    let folder = folder()?;
+    let folder = folder.path();
     let library = order.library();
     let mut command = Command::new(&order.compiler);
     command.args(["-O2", "-fPIC", "-shared", "-frecursive", "-std=legacy"]);
@@ -99,7 +100,7 @@ pub fn build(order: &Order) -> Result<Built, String> {
     if !order.options.iter().any(|o| o.starts_with("-W") && !o.starts_with("-Wl")) {
         command.arg("-w"); // old sources are full of what is warned of today
     }
-    command.arg("-I").arg(&folder.0).arg("-J").arg(&folder.0).args(&order.options);
+    command.arg("-I").arg(folder).arg("-J").arg(folder).args(&order.options);
     if order.sources.is_empty() {
         return Err("expected at least one source, got none".into());
     }
@@ -107,8 +108,8 @@ pub fn build(order: &Order) -> Result<Built, String> {
         check(source)?;
         command.arg(source);
     }
-    command.arg(folder.0.join("utilities.c")).args(["-Wl,-Bsymbolic", "-Wl,-z,defs"]);
-    command.arg(format!("-Wl,--version-script={}", folder.0.join("exports.map").display()));
+    command.arg(folder.join("utilities.c")).args(["-Wl,-Bsymbolic", "-Wl,-z,defs"]);
+    command.arg(format!("-Wl,--version-script={}", folder.join("exports.map").display()));
     let output = command.arg("-o").arg(&library).args(["-lm"]).output().map_err(|e| {
         format!(
             "the compiler `{}` cannot be run: {e}; install it (`apt install gfortran`) or name another one",
@@ -117,7 +118,7 @@ pub fn build(order: &Order) -> Result<Built, String> {
     })?;
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     if !output.status.success() {
-        return Err(failure(order, &said, &folder.0));
+        return Err(failure(order, &said, folder));
     }
     let notes = look_at(&library)?;
     Ok(Built { library, warnings: said, notes })
@@ -206,4 +207,20 @@ fn look_at(library: &Path) -> Result<Vec<String>, String> {
         notes.push("it may print or write files (WRITE): once per call that is slow".into());
     }
     Ok(notes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_new_is_of_its_user_alone_and_goes() {
+        let (a, b) = (private_folder().expect("a folder"), private_folder().expect("another"));
+        assert_ne!(a.path(), b.path());
+        let mode = fs::metadata(a.path()).expect("a folder").permissions().mode();
+        assert_eq!(mode & 0o777, 0o700);
+        let path = a.path().to_path_buf();
+        drop(a);
+        assert!(!path.exists());
+    }
 }

@@ -1,5 +1,6 @@
 //! Opens the user's library and finds its routines; one copy of it per thread where the sidecar asks for that.
 
+use crate::build::private_folder;
 use crate::host;
 use crate::sidecar::{Routine, Threads};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
@@ -108,14 +109,12 @@ impl UserLibrary {
 
     /// A copy of the file is another library to the loader, with data of its own. The file is removed when it is open.
     fn open_copy(&self) -> Result<Functions, String> {
-        static NUMBER: AtomicUsize = AtomicUsize::new(0);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let name = format!("lahar-umat-{}-{number}.so", std::process::id());
-        let copy = std::env::temp_dir().join(name);
+        let folder = private_folder()?;
+        let copy = folder.path().join("copy.so");
         let opened = std::fs::copy(&self.path, &copy)
             .map_err(|e| format!("cannot write it: {e}"))
             .and_then(|_| open(&copy, Some(self.routine)));
-        let _ = std::fs::remove_file(&copy);
+        drop(folder);
         opened.map(|(_, functions)| functions).map_err(|e| {
             format!(
                 "the copy {} of {} for another thread: {e}; set TMPDIR to a folder with room from which programs may run, \
