@@ -133,6 +133,7 @@ fn what_checked_mode_finds_is_a_broken_contract() {
         ("not_pointwise", "in a batch of its own"),
         ("order_matters", "with the points in reversed order"),
         ("unwritten_output", "leaves unwritten stress1 zx"),
+        ("negative_wave_speed", "wave_speed of point 1 of 2 is -10.0"),
         ("writes_input", "writes its input: strain_increment"),
         ("writes_past_n", "writes past its points: wave_speed[1]"),
         ("writes_start_state", "writes its start state: state0 `memory`"),
