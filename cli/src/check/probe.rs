@@ -30,6 +30,7 @@ pub struct Probe<'a> {
     pub values: Values,
     pub material: Arc<Material>,
     starts: OnceCell<Starts>,
+    plane: OnceCell<bool>,
 }
 
 /// What came of the starts that were tried.
@@ -37,8 +38,8 @@ pub struct Probe<'a> {
 pub struct Starts {
     /// Those from which the model goes on.
     pub good: Vec<Start>,
-    /// Why others are none.
-    pub reasons: Vec<String>,
+    /// Others, and why they are none.
+    pub reasons: Vec<(String, String)>,
     /// A breach of the contract that the engine found on the way.
     pub breach: Option<Verdict>,
 }
@@ -62,7 +63,8 @@ impl<'a> Probe<'a> {
             sentence: format!("the model refuses its own default and typical values: {e}"),
             input: Some(show(&values)),
         })?;
-        Ok(Self { library, report, model, values, material, starts: OnceCell::new() })
+        let (starts, plane) = Default::default();
+        Ok(Self { library, report, model, values, material, starts, plane })
     }
 
     /// Tells the parent what comes, in case that it does not come back.
@@ -178,7 +180,7 @@ impl<'a> Probe<'a> {
             }
             match self.settled(point) {
                 Ok(point) => starts.good.push(Start { name, point }),
-                Err(NoStart::Because(why)) => starts.reasons.push(format!("{name}: {why}")),
+                Err(NoStart::Because(why)) => starts.reasons.push((name, why)),
                 Err(NoStart::Breach(verdict)) => starts.breach = starts.breach.or(Some(verdict)),
             }
         }
@@ -201,10 +203,37 @@ impl<'a> Probe<'a> {
             return Err(NoStart::Because(text));
         }
         let speed = self.try_wave_speed(&given).map_err(why)?.wave_speed;
-        if !(speed > 0.0 && speed.is_finite() && got.wave_speed > 0.0) {
-            return Err(NoStart::Because(format!("the wave speed is {speed} m/s")));
+        for (name, speed) in [("wave_speed", speed), ("update", got.wave_speed)] {
+            if !(speed > 0.0 && speed.is_finite()) {
+                let text = format!("`{name}` gives the wave speed {speed:?} m/s");
+                return Err(NoStart::Because(text));
+            }
         }
         Ok(point.moved(self.model, &Mat3::zeros(), &given, got))
+    }
+
+    /// Whether the model refuses what shears out of the plane of x and y and takes what does not: it is then tried with plane motions.
+    pub fn plane(&self) -> bool {
+        *self.plane.get_or_init(|| {
+            let Some(start) = self.tried_starts().good.first() else { return false };
+            let l = Mat3::new(0.5, 0.2, 0.1, 0.1, -0.4, -0.2, 0.2, 0.3, -0.2) * (1e-6 / DT);
+            let takes = |l: &Mat3| {
+                let given = start.point.given(self.model, l, DT);
+                let got = self.try_update(&self.material, std::slice::from_ref(&given));
+                got.is_ok_and(|got| got[0].is_done())
+            };
+            !takes(&l) && takes(&planar(l))
+        })
+    }
+
+    /// The part of a velocity gradient, strain or change of stress that the model can be tried with.
+    pub fn in_plane(&self, l: Mat3) -> Mat3 {
+        if self.plane() { planar(l) } else { l }
+    }
+
+    /// A random velocity gradient [1/s] that the model can be tried with.
+    pub fn gradient(&self, lcg: &mut Lcg, rate: f64) -> Mat3 {
+        self.in_plane(lcg.gradient(rate))
     }
 
     /// Points of every start after some random steps of that size [-]; where a step fails, the path ends before it.
@@ -212,10 +241,10 @@ impl<'a> Probe<'a> {
         let mut lcg = Lcg::new(seed);
         let mut points = Vec::new();
         for Start { mut point, .. } in self.starts()? {
-            let mut l = lcg.gradient(scale / DT);
+            let mut l = self.gradient(&mut lcg, scale / DT);
             for step in 0..steps {
                 if step % 6 == 5 {
-                    l = lcg.gradient(scale / DT);
+                    l = self.gradient(&mut lcg, scale / DT);
                 }
                 let given = point.given(self.model, &l, DT);
                 let got = self.one(&given)?;
@@ -235,6 +264,11 @@ impl<'a> Probe<'a> {
         let got = self.try_wave_speed(&given).map_err(|e| self.broken(&e, &given))?;
         Ok(point.density * got.wave_speed.powi(2))
     }
+}
+
+/// Without what leads out of the plane of x and y.
+fn planar(l: Mat3) -> Mat3 {
+    Mat3::from_fn(|a, b| if a == 2 || b == 2 { 0.0 } else { l[(a, b)] })
 }
 
 /// Why a model does not go on from a point.

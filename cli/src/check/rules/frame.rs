@@ -11,9 +11,10 @@ use nalgebra::{Rotation3, Vector3};
 const TOLERANCE: f64 = 1e-6;
 
 /// Frames that the engine might see the same step in.
-fn frames() -> [Mat3; 3] {
+fn frames(plane: bool) -> [Mat3; 3] {
     let turn = |axis: Vector3<f64>, angle: f64| {
-        Rotation3::from_scaled_axis(axis.normalize() * angle).into_inner()
+        let axis = if plane { Vector3::z() } else { axis.normalize() };
+        Rotation3::from_scaled_axis(axis * angle).into_inner()
     };
     [
         turn(Vector3::new(1.0, 2.0, 3.0), 0.7),
@@ -39,10 +40,10 @@ fn turned_by_the_engine(probe: &Probe<'_>) -> Outcome {
         for point in probe.loaded(5, 1e-4, steps)? {
             let modulus = probe.modulus(&point)?;
             for scale in [1e-6, 1e-4, 1e-3] {
-                let l = lcg.gradient(scale / DT);
+                let l = probe.gradient(&mut lcg, scale / DT);
                 let given = point.given(model, &l, DT);
                 let got = probe.one(&given)?;
-                for r in frames() {
+                for r in frames(probe.plane()) {
                     let turned = given.turned(model, &r);
                     let there = probe.one(&turned)?;
                     if !got.is_done() || !there.is_done() {
@@ -118,7 +119,7 @@ fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     // A rotation of first order in each step errs by half the square of the angle.
     let accuracy = SPINS as f64 * SPIN * SPIN;
-    let w = skew(SPIN / DT);
+    let w = skew(SPIN / DT, probe.plane());
     let r = step_rotation(&w, SPINS as f64 * DT);
     let mut lcg = Lcg::new(12);
     let mut count = 0;
@@ -128,7 +129,7 @@ fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
             let rested = spun(probe, &point, &Mat3::zeros())?;
             let (Some(rested), Some(turned)) = (rested, spun(probe, &point, &w)?) else { continue };
             for scale in [1e-6, 1e-4, 1e-3] {
-                let l = lcg.gradient(scale / DT);
+                let l = probe.gradient(&mut lcg, scale / DT);
                 let got = probe.one(&rested.given(model, &l, DT))?;
                 let given = turned.given(model, &(r * l * r.transpose()), DT);
                 let there = probe.one(&given)?;
@@ -157,9 +158,10 @@ fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
     }
 }
 
-/// A spin by `rate` [rad/s] about an axis that is none of the coordinates'.
-fn skew(rate: f64) -> Mat3 {
-    let (x, y, z) = (2.0 / 3.0 * rate, 1.0 / 3.0 * rate, 2.0 / 3.0 * rate);
+/// A spin by `rate` [rad/s] about z for plane motions, else about an axis that is none of the coordinates'.
+fn skew(rate: f64, plane: bool) -> Mat3 {
+    let axis = if plane { [0.0, 0.0, 1.0] } else { [2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0] };
+    let [x, y, z] = axis.map(|a| a * rate);
     Mat3::new(0.0, -z, y, z, 0.0, -x, -y, x, 0.0)
 }
 
@@ -195,7 +197,7 @@ pub fn spin(probe: &Probe<'_>) -> Outcome {
         return Ok(Verdict::Skipped("the engine turns stress and state for the model".into()));
     }
     let angle = 0.01;
-    let w = skew(angle / DT);
+    let w = skew(angle / DT, probe.plane());
     let mut count = 0;
     for point in probe.loaded(6, 1e-4, 15)? {
         let rest = point.at_rest(model);

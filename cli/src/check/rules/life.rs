@@ -134,6 +134,7 @@ fn run_with(probe: &Probe<'_>, values: &Values, wanted: bool) -> Outcome<()> {
     for start in starts {
         for (i, scale) in [1e-6, 1e-4, -1e-4, 1e-3].into_iter().enumerate() {
             let l = Mat3::new(1.0, 0.3, 0.0, -0.2, -0.6, 0.1, 0.4, 0.0, -0.5) * (scale / DT);
+            let l = probe.in_plane(l);
             let given = start.point.given(probe.model, &l, DT);
             let Ok(got) = other.try_update(&other.material, std::slice::from_ref(&given)) else {
                 continue;

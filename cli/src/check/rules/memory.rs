@@ -23,7 +23,7 @@ fn tasks(probe: &Probe<'_>, seed: u64) -> Outcome<Vec<Given>> {
     for steps in [0, 10] {
         for point in probe.loaded(seed, 1e-4, steps)? {
             for scale in [1e-5, 1e-3, 1e-2] {
-                tasks.push(point.given(probe.model, &lcg.gradient(scale / DT), DT));
+                tasks.push(point.given(probe.model, &probe.gradient(&mut lcg, scale / DT), DT));
             }
         }
     }

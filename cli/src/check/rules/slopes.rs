@@ -37,10 +37,10 @@ pub fn tangent(probe: &Probe<'_>) -> Outcome {
     for steps in [0, 4, 20] {
         for point in probe.loaded(9, 3e-4, steps)? {
             for scale in [1e-6, 1e-4, 1e-3] {
-                let given = point.given(probe.model, &lcg.gradient(scale / DT), DT);
+                let given = point.given(probe.model, &probe.gradient(&mut lcg, scale / DT), DT);
                 let Some(tangent) = probe.tangent(&given)? else { continue };
                 let largest = size(tangent.as_flattened());
-                for j in 0..6 {
+                for j in (0..6).filter(|j| !probe.plane() || PLANE.contains(j)) {
                     let Some([left, right]) = sides(probe, &given, j)? else { continue };
                     let noise = 1e-13 * size(&point.stress) / H;
                     let scale = largest.max(size(&left)).max(size(&right)) + noise;
@@ -71,6 +71,8 @@ pub fn tangent(probe: &Probe<'_>) -> Outcome {
 }
 
 const NAMES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+/// Strains of plane motions.
+const PLANE: [usize; 3] = [0, 1, 3];
 
 /// Compares what `wave_speed` and `update` say with each other and with the response to small strains: ρ c² is the largest eigenvalue of the
 /// acoustic tensor n.C.n. Of a fluid, whose shear stress is no stiffness, with the bulk modulus.
@@ -133,20 +135,22 @@ fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, S
     };
     for h in [H, -H] {
         let sign = if h > 0.0 { "extension" } else { "compression" };
-        let third = Mat3::identity() / 3.0;
-        if let Some(change) = response(probe, &given, &third, h)? {
-            consider(change.trace() / 3.0, format!("a small isotropic {sign}"));
+        let axes = if probe.plane() { 2 } else { 3 };
+        let even = probe.in_plane(Mat3::identity()) / f64::from(axes);
+        if let Some(change) = response(probe, &given, &even, h)? {
+            let mean = probe.in_plane(change).trace() / f64::from(axes);
+            consider(mean, format!("a small isotropic {sign}"));
         }
         if fluid {
             continue;
         }
-        for n in directions() {
+        for n in directions().into_iter().filter(|n| !probe.plane() || n.z == 0.0) {
             let shape = |m: &Vector3<f64>| 0.5 * (m * n.transpose() + n * m.transpose());
             let mut acoustic = Mat3::zeros();
             let mut linear = true;
-            for m in 0..3 {
+            for m in 0..axes as usize {
                 match response(probe, &given, &shape(&Vector3::ith(m, 1.0)), h)? {
-                    Some(change) => acoustic.set_column(m, &(change * n)),
+                    Some(change) => acoustic.set_column(m, &(probe.in_plane(change) * n)),
                     None => linear = false,
                 }
             }
@@ -206,7 +210,7 @@ pub fn stored_energy(probe: &Probe<'_>) -> Outcome {
             continue; // a law in rates stores per current volume only up to the strain that is there already
         }
         for _ in 0..6 {
-            let l = lcg.gradient(1e-5 / DT);
+            let l = probe.gradient(&mut lcg, 1e-5 / DT);
             let Some((out, turn)) = path(probe, &start.point, &l, 10)? else { continue };
             let Some((_, back)) = path(probe, &turn, &-l, 10)? else { continue };
             let elastic = distance(&back.stress, &start.point.stress) <= 1e-3 * modulus * 1e-4

@@ -4,6 +4,7 @@ use crate::check::probe::{DT, Lcg, Outcome, Probe, Starts, distance, size};
 use crate::check::report::Verdict;
 use crate::point::{Given, Got, Point};
 use lahar::error::Status;
+use lahar::material::ParameterKind;
 use lahar::tensor::Mat3;
 use lahar_plugin_abi::{
     LAHAR_CAPABILITY_POINTWISE, LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR,
@@ -17,13 +18,15 @@ pub fn starts(probe: &Probe<'_>) -> Outcome {
     if let Some(breach) = breach {
         return Err(breach.clone());
     }
-    if let Some(mute) = reasons.iter().find(|r| r.contains("without saying why")) {
+    let told = grouped(reasons);
+    if let Some(mute) = told.iter().find(|r| r.contains("without saying why")) {
         return Err(Verdict::failed(format!("{mute}; set_error must be called")));
     }
     if starts.is_empty() {
         return Err(Verdict::failed(format!(
-            "the model goes on from none of the starts that were tried: {}",
-            reasons.join("; ")
+            "{}the model goes on from none of the starts that were tried: {}",
+            without_values(probe),
+            told.join("; ")
         )));
     }
     // Starts that a host may ask for by mistake: they come back, taken or refused.
@@ -36,7 +39,33 @@ pub fn starts(probe: &Probe<'_>) -> Outcome {
         }
     }
     let names: Vec<&str> = starts.iter().map(|s| s.name.as_str()).collect();
-    Ok(Verdict::Ok(names.join(", ")))
+    let mut text = names.join(", ");
+    if probe.plane() {
+        text += "; the model refuses shear out of the plane: all rules use plane motions, turned about z only";
+    }
+    Ok(Verdict::Ok(text))
+}
+
+/// A reason once, with all starts that it holds for.
+fn grouped(reasons: &[(String, String)]) -> Vec<String> {
+    let mut all: Vec<(Vec<&str>, &str)> = Vec::new();
+    for (start, why) in reasons {
+        match all.iter_mut().find(|(_, known)| known == why) {
+            Some((starts, _)) => starts.push(start),
+            None => all.push((vec![start], why)),
+        }
+    }
+    all.iter().map(|(starts, why)| format!("{}: {why}", starts.join(", "))).collect()
+}
+
+/// Advice where nobody has given the model numbers to work with.
+fn without_values(probe: &Probe<'_>) -> &'static str {
+    let real = |i: &usize| probe.model.parameters[*i].kind == ParameterKind::Real;
+    let mut reals = (0..probe.values.len()).filter(real).peekable();
+    match reals.peek().is_some() && reals.all(|i| probe.values[i].1 == 0.0) {
+        true => "all parameters are 0: give values with --set key=value; ",
+        false => "",
+    }
 }
 
 /// Runs everything that the model offers under the engine's own checks.
@@ -46,7 +75,7 @@ pub fn contract(probe: &Probe<'_>) -> Outcome {
     for steps in [0, 8] {
         for point in probe.loaded(4, 1e-4, steps)? {
             for scale in [0.0, 1e-6, 1e-4, 1e-3, 1e-2] {
-                batch.push(point.given(probe.model, &lcg.gradient(scale / DT), DT));
+                batch.push(point.given(probe.model, &probe.gradient(&mut lcg, scale / DT), DT));
             }
         }
     }
@@ -121,7 +150,7 @@ pub fn zero_increment(probe: &Probe<'_>) -> Outcome {
 
 /// Whether the same strain in a longer step gives another stress.
 fn rate_dependent(probe: &Probe<'_>, point: &Point, modulus: f64) -> Outcome<bool> {
-    let l = Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT);
+    let l = probe.in_plane(Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT));
     for l in [l, -l, Mat3::zeros()] {
         let fast = probe.one(&point.given(probe.model, &l, DT))?;
         let slow = probe.one(&point.given(probe.model, &(0.01 * l), 100.0 * DT))?;
@@ -142,11 +171,11 @@ pub fn loading(probe: &Probe<'_>) -> Outcome {
         for (seed, start) in probe.starts()?.into_iter().cycle().take(8).enumerate() {
             let mut lcg = Lcg::new(100 + seed as u64);
             let mut point = start.point.clone();
-            let mut l = lcg.gradient(scale / DT);
+            let mut l = probe.gradient(&mut lcg, scale / DT);
             for step in 0..40 {
                 l = match step % 8 {
                     4 => -l,
-                    0 => lcg.gradient(scale / DT),
+                    0 => probe.gradient(&mut lcg, scale / DT),
                     _ => l,
                 };
                 let given = point.given(probe.model, &l, DT);
@@ -217,7 +246,7 @@ fn sane(probe: &Probe<'_>, given: &Given, got: &Got) -> Outcome<()> {
 
 /// Steps whose length goes to zero at a given velocity gradient: the stress must go to that of the start.
 pub fn small_steps(probe: &Probe<'_>) -> Outcome {
-    let l = Mat3::new(0.1, 0.03, 0.0, -0.02, -0.06, 0.01, 0.04, 0.0, -0.05);
+    let l = probe.in_plane(Mat3::new(0.1, 0.03, 0.0, -0.02, -0.06, 0.01, 0.04, 0.0, -0.05));
     let mut count = 0;
     for point in probe.loaded(15, 1e-5, 5)? {
         for dt in [1e-6, 1e-12, 1e-30, 1e-200] {
@@ -240,7 +269,7 @@ type Set = fn(&mut Given, usize, f64);
 pub fn garbage(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     let start = &probe.starts()?[0];
-    let l = Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT);
+    let l = probe.in_plane(Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT));
     let clean = vec![start.point.given(model, &l, DT); 4];
     let expected = probe.update(&clean)?;
     let places: [(&str, usize, Set); 6] = [
