@@ -11,22 +11,23 @@ use crate::world::state::State;
 #[derive(Default)]
 pub struct Start {
     columns: Vec<Vec<f64>>,
-    /// Of walls, then of prescribed velocities [N].
-    reactions: Vec<[f64; 3]>,
+    /// Of walls, prescribed velocities and tractions, one after the other [N].
+    forces: Vec<[f64; 3]>,
 }
 
-/// Copies the columns of all particles, and the reactions.
+/// Copies the columns of all particles, and the forces of conditions.
 pub fn keep_start<const D: usize>(world: &mut State<D>) -> Result<()> {
-    let Start { columns, reactions } = &mut world.start;
-    columns.resize_with(world.bodies.len(), Vec::new);
-    for (body, start) in world.bodies.iter().zip(columns) {
-        body.particles.copy_columns(start)?;
+    let mut start = std::mem::take(&mut world.start);
+    start.columns.resize_with(world.bodies.len(), Vec::new);
+    for (body, columns) in world.bodies.iter().zip(&mut start.columns) {
+        body.particles.copy_columns(columns)?;
     }
-    let prescribed = &world.conditions.prescribed;
-    reactions.clear();
-    reserve(reactions, world.walls.len() + prescribed.len(), "the start of a step")?;
-    reactions.extend(world.walls.iter().map(|entry| entry.reaction));
-    reactions.extend(prescribed.iter().map(|entry| entry.reaction));
+    start.forces.clear();
+    let count =
+        world.walls.len() + world.conditions.prescribed.len() + world.conditions.tractions.len();
+    reserve(&mut start.forces, count, "the start of a step")?;
+    start.forces.extend(forces(world).map(|force| *force));
+    world.start = start;
     Ok(())
 }
 
@@ -35,10 +36,18 @@ pub fn back_to_start<const D: usize>(world: &mut State<D>) {
     for (body, start) in world.bodies.iter_mut().zip(&world.start.columns) {
         body.particles.restore_columns(start);
     }
+    let start = std::mem::take(&mut world.start);
+    for (force, before) in forces(world).zip(&start.forces) {
+        *force = *before;
+    }
+    world.start = start;
+    world.stale = true;
+}
+
+/// The forces of conditions that hosts can ask for.
+fn forces<const D: usize>(world: &mut State<D>) -> impl Iterator<Item = &mut [f64; 3]> {
     let walls = world.walls.iter_mut().map(|entry| &mut entry.reaction);
     let prescribed = world.conditions.prescribed.iter_mut().map(|entry| &mut entry.reaction);
-    for (reaction, start) in walls.chain(prescribed).zip(&world.start.reactions) {
-        *reaction = *start;
-    }
-    world.stale = true;
+    let tractions = world.conditions.tractions.iter_mut().map(|entry| &mut entry.force);
+    walls.chain(prescribed).chain(tractions)
 }
