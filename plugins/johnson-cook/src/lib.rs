@@ -62,14 +62,8 @@ impl Model for JohnsonCook {
           doi:10.1016/0013-7944(85)90052-9";
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
-            .typical(1.24e11)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e6, 1.0e12),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.34)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::YOUNGS_MODULUS.typical(1.24e11).advised(1.0e6, 1.0e12),
+        elastic::POISSONS_RATIO.typical(0.34),
         Parameter::real(c"yield_stress", c"A", c"Pa", c"First yield stress, slow and cold")
             .typical(9.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY)

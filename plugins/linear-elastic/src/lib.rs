@@ -59,10 +59,7 @@ impl Model for LinearElastic {
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
             .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::POISSONS_RATIO,
     ];
     const STATES: &'static [State] = &[];
     const INPUTS: &'static [Input] = &[Input::Density];

@@ -66,14 +66,8 @@ impl Model for MatsuokaNakai {
         c"Matsuoka, Nakai: Stress-deformation and strength characteristics of soil under three different principal stresses, Proc. JSCE 232 (1974), doi:10.2208/jscej1969.1974.232_59";
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
-            .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e4, 1.0e11),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::YOUNGS_MODULUS,
+        elastic::POISSONS_RATIO,
         Parameter::real(
             c"friction_angle",
             c"phi",

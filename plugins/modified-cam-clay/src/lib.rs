@@ -89,10 +89,7 @@ impl Model for ModifiedCamClay {
         .typical(0.02)
         .hard(1e-7, 1e3)
         .advised(0.001, 0.09),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.1, 0.45),
+        lahar_plugin::elastic::POISSONS_RATIO.advised(0.1, 0.45),
         Parameter::real(
             c"reference_void_ratio",
             c"e_N",

@@ -67,14 +67,8 @@ impl Model for MohrCoulomb {
         c"Clausen, Damkilde, Andersen: An efficient return algorithm for non-associated plasticity with linear yield criteria in principal stress space, Comput. Struct. 85 (2007), doi:10.1016/j.compstruc.2007.04.002";
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
-            .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e4, 1.0e11),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::YOUNGS_MODULUS,
+        elastic::POISSONS_RATIO,
         Parameter::real(c"friction_angle", c"phi", c"deg", c"Friction angle at the peak")
             .typical(30.0)
             .hard(0.0, 89.0)

@@ -1,6 +1,21 @@
 //! Constants of isotropic elasticity.
 
+use crate::table::Parameter;
 use crate::tensor::{contract, deviator, trace};
+
+/// Young's modulus E [Pa] as a parameter; models change what is typical or advised of theirs.
+pub const YOUNGS_MODULUS: Parameter =
+    Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
+        .typical(1.0e7)
+        .hard(f64::MIN_POSITIVE, f64::INFINITY)
+        .advised(1.0e4, 1.0e11);
+
+/// Poisson's ratio ν [–] as a parameter.
+pub const POISSONS_RATIO: Parameter =
+    Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
+        .typical(0.3)
+        .hard(-0.999, 0.4999)
+        .advised(0.0, 0.495);
 
 /// Lamé's constants λ and μ [Pa] of Young's modulus [Pa] and Poisson's ratio [–]; an error if they are not finite.
 pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> Result<[f64; 2], String> {

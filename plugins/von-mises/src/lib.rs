@@ -66,14 +66,8 @@ impl Model for VonMises {
         c"Simo, Hughes: Computational Inelasticity (1998), section 3.3, doi:10.1007/b98904";
     const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
-            .typical(2.0e11)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e3, 1.0e12),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::YOUNGS_MODULUS.typical(2.0e11).advised(1.0e3, 1.0e12),
+        elastic::POISSONS_RATIO,
         Parameter::real(c"yield_stress", c"sigma_0", c"Pa", c"First yield stress in uniaxial tension")
             .typical(2.5e8)
             .hard(f64::MIN_POSITIVE, f64::INFINITY)
