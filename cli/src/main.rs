@@ -5,6 +5,7 @@
 mod bench;
 mod check;
 mod info;
+mod inside;
 mod plugin;
 mod point;
 mod replay;
@@ -20,6 +21,9 @@ const CANNOT: u8 = 2;
 #[derive(Parser)]
 #[command(name = "lahar", version, about = "An embeddable material point method engine")]
 struct Cli {
+    /// Part of the other commands
+    #[arg(long, hide = true)]
+    inside: bool,
     #[command(subcommand)]
     group: Group,
 }
@@ -49,8 +53,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let Group::Plugin(command) = Cli::parse().group;
+    let Cli { inside, group: Group::Plugin(command) } = Cli::parse();
     let result = match command {
+        Command::Info(_) | Command::Bench(_) if !inside => inside::watched(),
+        Command::Check(_) | Command::Replay(_) if !inside => inside::instead(),
         Command::Info(arguments) => info::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

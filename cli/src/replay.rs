@@ -4,6 +4,7 @@ use crate::plugin::{Library, json};
 use crate::say;
 use clap::Args;
 use lahar::material::{Capsule, End, Number, Replay};
+use lahar_plugin_abi::LAHAR_POINT_FAILED;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,13 +37,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
             None => format!("{e}; the capsule names this file, --plugin another"),
         })?,
     };
+    if !arguments.json {
+        // Before the call: a library that ends the process has at least been asked in the open.
+        say(&start(&capsule));
+    }
     let replay = capsule.replay(&library.context).map_err(|e| e.to_string())?;
     let [plugin, version] = &replay.plugin;
     if arguments.json {
         let (reproduced, again) = (replay.reproduced, &replay.end);
         say(&json(&Answer { reproduced, plugin, version, again, capsule: &capsule })?);
     } else {
-        say(&text(&capsule, &replay));
+        say(&end(&capsule, &replay));
     }
     Ok(ExitCode::from(u8::from(!replay.reproduced)))
 }
@@ -59,17 +64,14 @@ struct Answer<'a> {
 const SYMMETRIC: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 const STATUS: [&str; 4] = ["ok", "unreliable", "wants a smaller step", "failed"];
 
-fn text(capsule: &Capsule, replay: &Replay) -> String {
+/// What the model is given.
+fn start(capsule: &Capsule) -> String {
     let Capsule { model, body, particle, step, time, dt, .. } = capsule;
-    let then = [capsule.plugin.clone(), capsule.plugin_version.clone()];
     let mut text = format!(
         "model {model} at particle {particle} of body {body}, step {step}, t = {} s, dt = {} s\n",
         time.0, dt.0
     );
-    text += &format!("plugin   {}\n", then.join(" "));
-    if replay.plugin != then {
-        text += &format!("now      {}\n", replay.plugin.join(" "));
-    }
+    text += &format!("plugin   {} {}\n", capsule.plugin, capsule.plugin_version);
     for (title, values) in [("parameters", &capsule.parameters.0), ("inputs", &capsule.inputs.0)] {
         text += &format!("\n{title}\n");
         for (name, value) in values {
@@ -83,15 +85,27 @@ fn text(capsule: &Capsule, replay: &Replay) -> String {
             text += &format!("  {:<34} {}\n", component(name, values.len(), c), number(value));
         }
     }
+    text + "\ncalling update ...\n"
+}
+
+/// What it answered then and now.
+fn end(capsule: &Capsule, replay: &Replay) -> String {
+    let mut text = String::new();
+    if replay.plugin != [capsule.plugin.clone(), capsule.plugin_version.clone()] {
+        text += &format!("\nnow      {}\n", replay.plugin.join(" "));
+    }
     text += &format!("\n{:<36} {:<26} now\n", "end", "in the capsule");
     for ((name, before), (_, now)) in rows(&capsule.end).iter().zip(rows(&replay.end)) {
         let mark = if *before == now { "" } else { "   differs" };
         text += &format!("  {name:<34} {before:<26} {now}{mark}\n");
     }
     text += match replay.reproduced {
+        true if capsule.end.status == LAHAR_POINT_FAILED => {
+            "\nreproduced: the point fails alone as it did in the step (what else a failed point leaves is not compared)\n"
+        }
         true => "\nreproduced: the point answers alone as it did in the step\n",
         false => {
-            "\nnot reproduced: another plugin, or a model that depends on more than it is given\n"
+            "\nnot reproduced: another plugin, an edited capsule, or a model that depends on more than it is given\n"
         }
     };
     text

@@ -2,7 +2,7 @@
 //! tool outlives them all.
 
 use crate::capsules::nan_capsule;
-use crate::support::{bad_plugin, plugin_path, scratch_folder, shipped, target_folder};
+use crate::support::{bad_plugin, plugin_path, repository, scratch_folder, shipped, target_folder};
 use std::fs;
 use std::process::{Command, Output};
 
@@ -291,6 +291,34 @@ fn bad_input_is_refused_in_a_line() {
         set("viscosity=nan", &["viscosity"]);
     }
     refused(&["check", &newtonian, "--time-limit", "0"], &["time limit above 0 s, got 0"]);
+}
+
+#[test]
+fn a_library_that_ends_the_process_does_not_do_so_without_a_word() {
+    refused(&["info", &bad_plugin("dies_on_load")], &["signal 11 (segmentation fault"]);
+    refused(&["bench", &bad_plugin("segfaults")], &["signal 11 (segmentation fault"]);
+    refused(&["bench", &bad_plugin("exits")], &["exit status 3", "take the host down"]);
+}
+
+#[test]
+fn the_adapter_beside_the_tool_is_found() {
+    let folder = scratch_folder();
+    let umat = repository("plugins/umat/tests/fortran/elastic.f");
+    let library = folder.join("libmine.so");
+    let library = library.to_str().expect("UTF-8");
+    output(&["umat-build", umat.to_str().expect("UTF-8"), "-o", library], 0);
+    assert!(output(&["info", library], 0).contains("model mine: "));
+    // As the manual has it: without a sidecar constants are given by number.
+    let set = ["--set", "nprops=2", "--set", "prop_1=1e7", "--set", "prop_2=0.3"];
+    let text = output(&[&["check", library][..], &set].concat(), 0);
+    assert!(text.contains("ok   wave_speed: "), "{text}");
+    let text = output(&["check", library], 1);
+    assert!(text.contains("all parameters are 0"), "{text}");
+    // A UMAT of plane strain is checked in the plane.
+    let sidecar = r#"{"ntens": 4, "parameters": [{"key": "e", "typical": 1e7}, {"key": "nu", "typical": 0.3}]}"#;
+    fs::write(folder.join("libmine.json"), sidecar).expect("a sidecar");
+    let text = output(&["check", library], 0);
+    assert!(text.contains("plane"), "{text}");
 }
 
 #[test]

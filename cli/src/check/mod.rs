@@ -3,7 +3,7 @@
 
 pub mod child;
 mod probe;
-mod process;
+pub mod process;
 mod report;
 mod rules;
 
