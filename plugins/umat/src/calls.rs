@@ -32,7 +32,7 @@ pub struct Instance {
 
 impl Instance {
     fn new(adapted: &'static Adapted, values: &[f64]) -> Result<Self, String> {
-        let props = if adapted.counted { &values[1..][..values[0] as usize] } else { values };
+        let props = if adapted.counted { counted(values)? } else { values };
         let floor = match adapted.floor {
             None => 0.0,
             Some(Floor::Value(value)) => value,
@@ -44,6 +44,19 @@ impl Instance {
             instance.floor = vumat::first_modulus(&instance)?.max(floor);
         }
         Ok(instance)
+    }
+}
+
+/// The first so many values as the first of all says; the others must have been left alone.
+fn counted(values: &[f64]) -> Result<&[f64], String> {
+    let (props, others) = values[1..].split_at(values[0] as usize);
+    match others.iter().position(|value| *value != 0.0) {
+        None => Ok(props),
+        Some(at) => Err(format!(
+            "prop_{} is given, but nprops is {}: raise nprops, or leave it out",
+            props.len() + at + 1,
+            props.len()
+        )),
     }
 }
 

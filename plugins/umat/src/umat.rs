@@ -38,6 +38,9 @@ const LOOKED_AT: usize = 4;
 /// What stands there.
 pub const UNTOUCHED: f64 = f64::from_bits(0x7ff8_1a4a_0000_beef);
 
+/// Values behind PROPS(NPROPS), which are no numbers: a routine that reads there fails.
+pub const BEYOND: usize = 64;
+
 /// DTIME where no step is known yet, as in `wave_speed`.
 const SOME_STEP: f64 = 1e-6;
 
@@ -384,7 +387,7 @@ impl Arguments {
         self.statev.clear();
         self.statev.resize(instance.adapted.states.len() + BEHIND, UNTOUCHED);
         self.props.clone_from(&instance.props);
-        self.props.resize(instance.props.len().max(1), 0.0);
+        self.props.resize(instance.props.len() + BEYOND, f64::NAN);
     }
 
     /// Sets every argument for point `k + i`, lane i of `start`.

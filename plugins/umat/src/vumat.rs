@@ -16,7 +16,7 @@ use crate::kinematics::{
 use crate::library::Functions;
 use crate::modulus::wave_modulus;
 use crate::sidecar::HiddenLength;
-use crate::umat::{BEHIND, UNTOUCHED};
+use crate::umat::{BEHIND, BEYOND, UNTOUCHED};
 use lahar_plugin_abi::*;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, c_void};
@@ -272,7 +272,7 @@ impl Block {
             array.resize((components * m).max(1), 0.0);
         };
         self.props.clone_from(&instance.props);
-        self.props.resize(instance.props.len().max(1), 0.0);
+        self.props.resize(instance.props.len() + BEYOND, f64::NAN);
         room(&mut self.coord_mp, 3);
         for scalar in [&mut self.char_length, &mut self.density] {
             room(scalar, 1);

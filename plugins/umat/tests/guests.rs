@@ -77,6 +77,20 @@ fn a_state_variable_too_many_is_found() {
 }
 
 #[test]
+fn constants_beyond_their_number_are_refused_and_reading_there_fails_the_point() {
+    let model = adapt(&library("elastic.f", None)).expect("a model");
+    let refused = Material::new(model, &[2.0, 1e7, 0.3, 30.0], 1).err().expect("an error");
+    assert!(refused.contains("prop_3 is given, but nprops is 2"), "{refused}");
+    for (count, status) in [(2.0, LAHAR_POINT_OK), (1.0, LAHAR_POINT_FAILED)] {
+        let values = [count, 1e7, if count > 1.0 { 0.3 } else { 0.0 }];
+        let mut m = Material::new(model, &values, 1).expect("a material");
+        pulled(&mut m);
+        m.update().expect("an update");
+        assert_eq!(m.status[0], status, "nprops = {count}");
+    }
+}
+
+#[test]
 fn what_is_not_a_number_fails_the_point() {
     let (mut m, _) = rude(3.0, "serial", 2);
     pulled(&mut m);
