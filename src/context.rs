@@ -136,10 +136,7 @@ impl Context {
     /// Takes a plugin that is linked into the program by its entry, such as `lahar_model_linear_elastic::plugin`, and returns its
     /// index in [`Context::plugins`]. The same entry gives the same index again. The plugin's path is its id in brackets.
     ///
-    /// The table and all that it points to must follow the plugin ABI, as those of a library that is loaded must; those
-    /// that `lahar_plugin` makes do.
-    ///
-    /// Errors: [`Status::PluginInvalid`], [`Status::PluginAbi`]. The list of plugins is then what it was.
+    /// Errors: [`Status::PluginInvalid`], [`Status::PluginAbi`], [`Status::PluginRefused`]. The list of plugins is then what it was.
     pub fn register_plugin(&self, entry: RustEntry) -> Result<usize> {
         self.register(StaticEntry::rust(entry))
     }

@@ -5,13 +5,13 @@ use super::handshake;
 use super::host::{HOST, take_error};
 use crate::error::{Error, Result, Status};
 use crate::material::Plugin;
-use lahar_plugin_abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin_abi::{LinkedPlugin, lahar_host_api, lahar_plugin_desc};
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Entry of a plugin that is written in Rust: keeps the host's table and gives its own.
-pub type RustEntry = fn(&'static lahar_host_api) -> &'static lahar_plugin_desc;
+pub type RustEntry = fn(&'static lahar_host_api) -> LinkedPlugin;
 
 /// The entry of a plugin that is linked in.
 #[derive(Clone, Copy)]
@@ -34,7 +34,6 @@ impl StaticEntry {
         Self(Language::C(entry))
     }
 
-    /// What is inside the table is a promise of whoever made it, as it is for a library that is loaded.
     pub(crate) fn rust(entry: RustEntry) -> Self {
         Self(Language::Rust(entry))
     }
@@ -50,7 +49,7 @@ impl StaticEntry {
         match self.0 {
             // SAFETY: the host table is static, the rest was asked for by `StaticEntry::c`; the caller holds the lock of exclusive functions.
             Language::C(entry) => unsafe { entry(&HOST) },
-            Language::Rust(entry) => entry(&HOST),
+            Language::Rust(entry) => entry(&HOST).desc(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The negotiation when a plugin is loaded: a table for each of its rules, right but for one thing, and the words that say so.
 
 use crate::plugins::{context, expect};
-use crate::register::spoiled;
+use crate::register::{linked, spoiled};
 use crate::support::bad_plugin;
 use lahar::context::RustEntry;
 use lahar::error::Status;
@@ -80,7 +80,7 @@ fn refuse(cases: &[Case]) {
     // An entry that was refused may be called again.
     static TABLE: Mutex<Option<&'static lahar_plugin_desc>> = Mutex::new(None);
     static TURN: Mutex<()> = Mutex::new(());
-    let entry: RustEntry = |_| TABLE.lock().unwrap().unwrap();
+    let entry: RustEntry = |_| linked(TABLE.lock().unwrap().unwrap());
     let _turn = TURN.lock();
     for (table, texts) in cases {
         let context = context();
@@ -233,11 +233,11 @@ fn the_same_tables_are_accepted_when_nothing_is_spoiled() {
     fn accept(entry: RustEntry) {
         assert_eq!(context().register_plugin(entry).unwrap(), 0);
     }
-    accept(|_| plugin(|_| {}));
-    accept(|_| parameter(|_| {}));
-    accept(|_| parameter(|p| p.kind = LAHAR_PARAMETER_INTEGER));
-    accept(|_| parameter(|p| (p.required, p.default_value) = (1, f64::NAN)));
-    accept(|_| choice(c"a|b", 1.0));
-    accept(|_| state(|_| {}));
-    accept(|_| inputs(&[1, 2, 3, 4, 5, 6, 7, 8, 9]));
+    accept(|_| linked(plugin(|_| {})));
+    accept(|_| linked(parameter(|_| {})));
+    accept(|_| linked(parameter(|p| p.kind = LAHAR_PARAMETER_INTEGER)));
+    accept(|_| linked(parameter(|p| (p.required, p.default_value) = (1, f64::NAN))));
+    accept(|_| linked(choice(c"a|b", 1.0)));
+    accept(|_| linked(state(|_| {})));
+    accept(|_| linked(inputs(&[1, 2, 3, 4, 5, 6, 7, 8, 9])));
 }

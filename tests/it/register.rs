@@ -4,7 +4,7 @@ use crate::support::plugin_path;
 use lahar::context::{Context, RustEntry};
 use lahar::error::Status;
 use lahar::material::{Material, StressBatch};
-use lahar_plugin::abi::{lahar_model_desc, lahar_plugin_desc};
+use lahar_plugin::abi::{LinkedPlugin, lahar_model_desc, lahar_plugin_desc};
 use std::ptr;
 use std::sync::{Arc, Mutex};
 
@@ -26,6 +26,12 @@ pub fn spoiled(
         plugin.models = Box::leak(Box::new(ptr::from_ref(model)));
     }
     Box::leak(Box::new(plugin))
+}
+
+/// A table as a linked plugin has it.
+pub fn linked(table: &'static lahar_plugin_desc) -> LinkedPlugin {
+    // SAFETY: the table and what it points to live on, and what is spoiled in it is refused before it is used.
+    unsafe { LinkedPlugin::new(table) }
 }
 
 #[test]
@@ -66,7 +72,7 @@ fn broken_tables_are_refused_with_their_reason() {
     ];
     // An entry that was refused may be called again.
     static TABLE: Mutex<Option<&'static lahar_plugin_desc>> = Mutex::new(None);
-    let entry: RustEntry = |_| TABLE.lock().unwrap().unwrap();
+    let entry: RustEntry = |_| linked(TABLE.lock().unwrap().unwrap());
     for (table, status, text) in tables {
         let context = context();
         *TABLE.lock().unwrap() = Some(table);

@@ -24,6 +24,10 @@
 #![no_std]
 #![allow(non_camel_case_types)]
 
+mod linked;
+
+pub use linked::LinkedPlugin;
+
 use core::ffi::{c_char, c_void};
 
 /// Major version of the plugin ABI; it is part of the entry's name.

@@ -8,7 +8,7 @@
 mod flow;
 
 use flow::{Flow, Solution, Step};
-use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
@@ -28,7 +28,7 @@ pub static PLUGIN: Plugin = Plugin::new(
 .licence(c"MIT OR Apache-2.0");
 
 /// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
     PLUGIN.entered(host)
 }
 

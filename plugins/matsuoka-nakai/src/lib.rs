@@ -7,7 +7,7 @@
 mod returning;
 mod surface;
 
-use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
@@ -29,7 +29,7 @@ pub static PLUGIN: Plugin = Plugin::new(
 .licence(c"MIT OR Apache-2.0");
 
 /// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
     PLUGIN.entered(host)
 }
 

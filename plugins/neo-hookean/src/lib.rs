@@ -1,7 +1,7 @@
 //! Compressible neo-Hookean elasticity: σ = [μ (b − I) + λ ln J I] / J with b = F Fᵀ, J = det F.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{contract, determinant, deviator, is_finite, left_cauchy_green, trace};
@@ -21,7 +21,7 @@ pub static PLUGIN: Plugin = Plugin::new(
 .licence(c"MIT OR Apache-2.0");
 
 /// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
     PLUGIN.entered(host)
 }
 

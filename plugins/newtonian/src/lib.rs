@@ -9,7 +9,7 @@ mod tait_water;
 pub use tait_water::TaitWater;
 
 use fluid::{EquationOfState, Fluid, Viscous};
-use lahar_plugin::abi::{lahar_host_api, lahar_plugin_desc};
+use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, State, c_text,
 };
@@ -25,7 +25,7 @@ pub static PLUGIN: Plugin = Plugin::new(
 .licence(c"MIT OR Apache-2.0");
 
 /// The entry of the plugin, for programs that link the models statically.
-pub fn plugin(host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
     PLUGIN.entered(host)
 }
 

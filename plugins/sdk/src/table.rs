@@ -414,9 +414,10 @@ impl Plugin {
     }
 
     /// The C table for a host that links the plugin statically, after its own table has been kept.
-    pub fn entered(&'static self, host: &'static lahar_host_api) -> &'static lahar_plugin_desc {
+    pub fn entered(&'static self, host: &'static lahar_host_api) -> LinkedPlugin {
         wall::set_host(host);
-        self.desc()
+        // SAFETY: the table is made of constants by this crate, and its functions are those of `wall`.
+        unsafe { LinkedPlugin::new(self.desc()) }
     }
 }
 
