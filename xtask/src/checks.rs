@@ -1,6 +1,6 @@
 //! `cargo xtask test`, `ci` and `headers`.
 
-use crate::{fortran, headers, instructions, process, setup};
+use crate::{bits, fortran, headers, instructions, process, setup};
 
 /// Every test, on the release profile: the drivers and the plugins come from the same build.
 ///
@@ -26,6 +26,7 @@ pub fn ci() -> Result<(), String> {
         "warnings",
     ])?;
     headers(true)?;
+    bits::run(false)?;
     instructions::run(false)?;
     test()
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
 
 mod bench;
+mod bits;
 mod checks;
 mod demo;
 mod fortran;
@@ -32,7 +33,7 @@ enum Task {
     Demo,
     /// Builds the workspace and runs every test
     Test,
-    /// Formatting, lints, headers, counts of instructions, then every test
+    /// Formatting, lints, headers, bits, counts of instructions, then every test
     Ci,
     /// Writes the C headers and the Fortran bindings from the Rust sources
     Headers {
@@ -43,6 +44,12 @@ enum Task {
     /// Counts the instructions of a step under valgrind and compares with benches/instructions.json
     Instructions {
         /// Writes the counts as the new baseline
+        #[arg(long)]
+        write: bool,
+    },
+    /// Compares the bits of every kernel after 100 steps with benches/bits.json
+    Bits {
+        /// Writes the sums as they are now
         #[arg(long)]
         write: bool,
     },
@@ -60,6 +67,7 @@ fn main() -> ExitCode {
         Task::Ci => checks::ci(),
         Task::Headers { check } => checks::headers(check),
         Task::Instructions { write } => instructions::run(write),
+        Task::Bits { write } => bits::run(write),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Verify(arguments) => verify::run(&arguments),
     };
