@@ -1,18 +1,14 @@
 //! A context owns what worlds share: the thread pool, the log and the list of loaded plugins.
 
-mod log;
-mod pool;
-
-pub use log::{LogLevel, LogSink};
-pub(crate) use log::{LogQueue, LogScope, push_current};
-
 use crate::error::{Error, Result, Status};
+pub use crate::log::{LogLevel, LogSink};
+use crate::log::{LogQueue, LogScope};
 use crate::material::{Model, Plugin};
+use crate::parallel::Pool;
 pub use crate::plugin::RustEntry;
 use crate::plugin::{self, StaticEntry};
 use crate::simd::Isa;
 use lahar_plugin_abi::{LAHAR_CAPABILITY_MAY_PRINT, LAHAR_CAPABILITY_MAY_STOP};
-use pool::Pool;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};

@@ -8,19 +8,23 @@
 //! # Map
 //!
 //! * [`step`] is the method, one file a stage; [`step::naive`] the same as the textbook writes it.
-//! * [`particles`], [`grid`]: the data. [`shape`], [`transfer`], [`boundary`]: the choices.
+//! * [`particles`], [`background`]: the data. [`shape`], [`transfer`], [`boundary`]: the choices.
 //! * [`material`]: what the engine knows of a constitutive model; `plugin` loads them.
 //! * [`world`] owns everything; [`context`] owns threads, log and plugins; `ffi` is the C ABI, documented in `lahar.h`.
 #![deny(missing_docs)]
 
+pub mod background;
 pub mod boundary;
 pub mod context;
 pub mod error;
 mod ffi;
-pub mod grid;
+mod log;
 pub mod material;
+pub mod memory;
 pub mod output;
+mod parallel;
 pub mod particles;
+mod platform;
 mod plugin;
 pub mod shape;
 pub mod simd;

@@ -253,7 +253,7 @@ fn view_open(count: i64, what: &str, action: &str) -> Error {
 mod tests {
     use super::super::entry::entry;
     use super::*;
-    use crate::world::options::Options;
+    use crate::step::options::Options;
 
     fn cell() -> Arc<WorldCell> {
         let context = ContextCell::new(Context::new(Some(1)).expect("a context"));

@@ -6,17 +6,16 @@
 //! lines that were queued. By then every lock is released, so callbacks may call the library.
 
 use super::cells::{ContextCell, WorldCell};
-use super::fpenv;
 use super::status::lahar_status;
 use crate::error::{Error, Result, Status};
+use crate::platform::{self, Silence};
+use crate::simd::environment;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
 thread_local! {
-    /// How many entries this thread is inside of; a worker thread of a pool counts as inside for good.
-    static INSIDE: Cell<u32> = const { Cell::new(0) };
     /// Where the last silent panic of this thread happened.
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
     /// The error of the last call of this thread that failed.
@@ -75,8 +74,8 @@ impl Scope {
 /// Runs the body of an exported function; `function` is its name, for the message.
 pub(super) fn entry(function: &str, body: impl FnOnce(&mut Scope) -> Result<()>) -> lahar_status {
     install_hook();
-    let _inside = Inside::enter();
-    let _environment = fpenv::Guard::new();
+    let _silence = Silence::enter();
+    let _environment = environment::Guard::new();
     let status = catch_unwind(AssertUnwindSafe(|| {
         let mut scope = Scope::default();
         let outcome = catch_unwind(AssertUnwindSafe(|| body(&mut scope)));
@@ -88,8 +87,8 @@ pub(super) fn entry(function: &str, body: impl FnOnce(&mut Scope) -> Result<()>)
 /// Runs code without errors, such as a destructor, under the same protection; a panic ends here.
 pub(super) fn quiet_entry(body: impl FnOnce()) {
     install_hook();
-    let _inside = Inside::enter();
-    let _environment = fpenv::Guard::new();
+    let _silence = Silence::enter();
+    let _environment = environment::Guard::new();
     let _ = catch_unwind(AssertUnwindSafe(body));
 }
 
@@ -102,35 +101,12 @@ pub(super) fn status_only(body: impl FnOnce() -> Result<()>) -> lahar_status {
 
 /// Calls a function of the host: in its floating-point environment, and with its panics its own.
 pub(super) fn call_host<R>(f: impl FnOnce() -> R) -> R {
-    let depth = INSIDE.try_with(|inside| inside.replace(0)).unwrap_or(0);
-    let result = fpenv::with_host(f);
-    let _ = INSIDE.try_with(|inside| inside.set(depth));
-    result
+    platform::aloud(|| environment::with_host(f))
 }
 
 /// The error of the last call of this thread that failed.
 pub(super) fn last_error() -> Option<Error> {
     LAST_ERROR.try_with(|last| last.borrow().clone()).unwrap_or(None)
-}
-
-/// Panics of this thread print nothing from now on: for the worker threads of a pool.
-pub(crate) fn mark_silent_thread() {
-    let _ = INSIDE.try_with(|inside| inside.set(inside.get() + 1));
-}
-
-struct Inside;
-
-impl Inside {
-    fn enter() -> Self {
-        mark_silent_thread();
-        Self
-    }
-}
-
-impl Drop for Inside {
-    fn drop(&mut self) {
-        let _ = INSIDE.try_with(|inside| inside.set(inside.get().saturating_sub(1)));
-    }
 }
 
 /// Once in a process: puts a hook before the present one that is silent on threads inside the library.
@@ -145,7 +121,7 @@ fn install_hook() {
     if !*installed {
         let previous = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
-            if INSIDE.try_with(Cell::get).unwrap_or(0) == 0 {
+            if !platform::is_silent() {
                 previous(info);
             } else {
                 let place = info.location().map(|at| format!(" at {}:{}", at.file(), at.line()));
@@ -187,13 +163,13 @@ mod tests {
     #[test]
     fn a_panic_of_the_host_outside_of_lahar_reaches_the_previous_hook() {
         assert_eq!(entry("lahar_test", |_| Ok(())), 0);
-        assert_eq!(INSIDE.with(Cell::get), 0);
-        let inside = Cell::new(9);
+        assert!(!platform::is_silent());
+        let inside = Cell::new(false);
         entry("lahar_test", |_| {
-            inside.set(INSIDE.with(Cell::get));
-            assert_eq!(call_host(|| INSIDE.with(Cell::get)), 0);
+            inside.set(platform::is_silent());
+            assert!(!call_host(platform::is_silent));
             Ok(())
         });
-        assert_eq!(inside.get(), 1);
+        assert!(inside.get());
     }
 }

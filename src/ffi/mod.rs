@@ -8,8 +8,7 @@
 
 mod arguments;
 mod cells;
-pub(crate) mod entry;
-pub(crate) mod fpenv;
+mod entry;
 mod layout;
 
 pub mod body;

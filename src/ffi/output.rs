@@ -5,6 +5,7 @@ use super::entry::entry;
 use super::status::lahar_status;
 use super::world::lahar_world;
 use crate::error::{Error, Result};
+use crate::output::vtk;
 use crate::world::queries::Totals;
 use std::ffi::c_char;
 use std::path::Path;
@@ -96,7 +97,7 @@ pub unsafe extern "C" fn lahar_world_write_vtp(
         // SAFETY: the host passes NULL or a live handle, and NULL or a text.
         let (cell, path) = unsafe { (scope.world(world)?, text(path, "path")?) };
         let path = check_path(path)?;
-        cell.query(|w| w.write_vtp(path))
+        cell.query(|w| vtk::write(w, path))
     })
 }
 

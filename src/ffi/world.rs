@@ -8,13 +8,13 @@ use super::cells::{Change, Steps, WorldCell};
 use super::context::lahar_context;
 use super::entry::{entry, quiet_entry};
 use super::status::lahar_status;
+use crate::background::GridPolicy;
 use crate::error::{Error, Result};
-use crate::grid::GridPolicy;
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::StepOrder;
+use crate::step::options::Options;
 use crate::transfer::TransferKind;
 use crate::world::World;
-use crate::world::options::Options;
 use std::sync::Arc;
 
 /// A background grid with its bodies and walls. Freed by lahar_world_free; views keep it alive.

@@ -6,7 +6,7 @@
 use super::{Kinematics, Material, Model, StressBatch};
 use crate::context::Context;
 use crate::error::{Error, Result, Status};
-use crate::world::scratch::{Scratch, with_scratch};
+use crate::material::scratch::{Scratch, with_scratch};
 use lahar_plugin_abi::LAHAR_POINT_FAILED;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

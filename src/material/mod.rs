@@ -3,6 +3,7 @@
 mod batch;
 mod capsule;
 mod description;
+pub mod scratch;
 
 pub use batch::StressBatch;
 pub use capsule::{Capsule, End, Named, Number, Occasion, Replay};
@@ -11,8 +12,9 @@ pub use description::{
     Transfer,
 };
 
-use crate::context::{Context, LogLevel, LogQueue, LogScope};
+use crate::context::Context;
 use crate::error::{Error, Result, Status};
+use crate::log::{LogLevel, LogQueue, LogScope};
 use crate::plugin::Instance;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::reserve;
 use crate::error::Result;
+use crate::memory::reserve;
 
 /// Neighbours that move together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Bodies from shapes: particles on a regular lattice.
 
-use super::reserve;
 use crate::error::{Error, Result};
+use crate::memory::reserve;
 
 /// A region to fill with particles. In two dimensions z is ignored, bodies are 1 m thick and a sphere is a disc.
 #[derive(Clone, Debug)]

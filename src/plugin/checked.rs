@@ -9,10 +9,9 @@
 
 use super::adapter::{Instance, Verb};
 use crate::error::{Error, Result, Status};
-use crate::ffi::fpenv;
 use crate::material::{Model, StressBatch};
-use crate::particles::{Aligned, stride_of};
-use crate::simd::LANES;
+use crate::memory::{Aligned, stride_of};
+use crate::simd::{LANES, environment};
 use lahar_plugin_abi::*;
 use std::sync::OnceLock;
 
@@ -224,7 +223,7 @@ impl<'a> Copies<'a> {
         let Self { instance, verb, n, read, written, status } = self;
         let stride = read[0].stride;
         let before = read.each_ref().map(|column| bits(column.slice()));
-        let control = fpenv::control();
+        let control = environment::control();
         let end = status.len() - GUARD;
         let [strain, velocity, deformation, stress0, state0, inputs] = read.each_ref();
         let [stress1, state1, speed, diffusivity, energy, factor, own] = written.each_mut();
@@ -252,9 +251,9 @@ impl<'a> Copies<'a> {
             },
             own.slice_mut(),
         );
-        let now = fpenv::control();
+        let now = environment::control();
         if now != control {
-            fpenv::set_default();
+            environment::set_default();
             return Err(self.breach(&format!(
                 "it changed the floating-point environment ({}): put it back before returning",
                 now.changed(control)

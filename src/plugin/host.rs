@@ -1,6 +1,6 @@
 //! The table of functions that plugins get: log, error text, wish to stop.
 
-use crate::context::push_current;
+use crate::log::push_current;
 use lahar_plugin_abi::{LAHAR_PLUGIN_ABI_MINOR, lahar_host_api};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char};

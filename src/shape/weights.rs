@@ -2,7 +2,7 @@
 //! its axes, which scatter and gather share.
 
 use super::stencil::Stencil;
-use crate::grid::{EDGE, Key};
+use crate::background::{EDGE, Key};
 use crate::simd::{LANES, Vector};
 
 /// Particles that go through each part of a kernel together: the parts have long chains of operations, which overlap within a part

@@ -4,6 +4,7 @@
 //! the copy that was compiled for the widest instruction set that the processor has and `LAHAR_SIMD` allows. Within a path results
 //! are reproducible to the last bit; between paths they differ by round-off, since some fuse multiplication and addition.
 
+pub(crate) mod environment;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;

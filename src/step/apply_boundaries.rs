@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::background::key::block_nodes;
+use crate::background::{EDGE, Key, Lanes};
 use crate::boundary::Wall;
-use crate::grid::key::block_nodes;
-use crate::grid::{EDGE, Key, Lanes};
 use crate::world::state::{Space, State, WallEntry};
 
 use prescribed::{prescribe, prescribe_again};

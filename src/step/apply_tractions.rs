@@ -5,10 +5,10 @@
 //! Nodes without mass get nothing: the weights of the others are scaled up, so that the sum of the forces is t A. The loop is
 //! serial, in the order of the particles' ids: surfaces are thin.
 
-use crate::grid::{Grid, Lanes};
+use crate::background::{Grid, Lanes};
 use crate::shape::stencil::At;
+use crate::step::kernels::Kernels;
 use crate::world::conditions::TractionEntry;
-use crate::world::dispatch::Kernels;
 use crate::world::state::State;
 
 /// Adds the forces of the tractions at the middle of the step to those of the stresses.

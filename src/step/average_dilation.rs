@@ -9,7 +9,7 @@
 
 use rayon::prelude::*;
 
-use crate::grid::{EDGE, Grid, Key, Run};
+use crate::background::{EDGE, Grid, Key, Run};
 use crate::particles::Dilations;
 use crate::world::state::{Body, Piece, Space, State};
 

@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use crate::grid::Lanes;
+use crate::background::Lanes;
 use crate::transfer::{TransferKind, filter};
 use crate::world::state::State;
 

@@ -7,9 +7,9 @@
 
 use std::marker::PhantomData;
 
-use crate::grid::key::EDGE;
-use crate::grid::tiles::{TileNode, load_tile};
-use crate::grid::{Grid, Key, Lanes, Run};
+use crate::background::key::EDGE;
+use crate::background::tiles::{TileNode, load_tile};
+use crate::background::{Grid, Key, Lanes, Run};
 use crate::particles::{CHUNK, ChunkMut, Motion};
 use crate::shape::modified::is_modified;
 use crate::shape::stencil::{At, ShapeFunction, Stencil};

@@ -15,9 +15,10 @@ pub mod movers;
 
 use rayon::prelude::*;
 
+use crate::background::{EDGE, Grid, GridPolicy, Key, Run};
 use crate::error::{Error, Place, Result, Status};
-use crate::grid::{EDGE, Grid, GridPolicy, Key, Run};
-use crate::particles::{Mark, Moves, refill, reserve};
+use crate::memory::{refill, reserve};
+use crate::particles::{Mark, Moves};
 use crate::simd::Real;
 use crate::world::state::{Body, Space, State};
 

@@ -22,8 +22,11 @@ pub mod apply_tractions;
 pub mod average_dilation;
 pub mod filter_velocities;
 pub mod grid_to_particles;
+pub mod hooks;
+pub mod kernels;
 pub mod locate;
 pub mod naive;
+pub mod options;
 pub mod order;
 pub mod particles_to_grid;
 pub mod retry;
@@ -33,7 +36,7 @@ pub mod update_grid;
 pub mod update_strain;
 pub mod update_stress;
 
-use crate::world::hooks::HookPoint;
+use crate::step::hooks::HookPoint;
 use crate::world::state::{Piece, State};
 
 pub use order::StepOrder;

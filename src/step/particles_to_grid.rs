@@ -12,10 +12,10 @@ use std::marker::PhantomData;
 
 use rayon::prelude::*;
 
-use crate::grid::blocks::Neighbours;
-use crate::grid::key::block_nodes;
-use crate::grid::tiles::{TileNode, Tiles, shared_rows};
-use crate::grid::{EDGE, Key, Lanes, Run};
+use crate::background::blocks::Neighbours;
+use crate::background::key::block_nodes;
+use crate::background::tiles::{TileNode, Tiles, shared_rows};
+use crate::background::{EDGE, Key, Lanes, Run};
 use crate::particles::Particles;
 use crate::shape::stencil::ShapeFunction;
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};

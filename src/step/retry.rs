@@ -4,7 +4,7 @@
 //! time to write them once in a step. What the grid held is not kept: it is mapped anew when somebody asks.
 
 use crate::error::Result;
-use crate::particles::reserve;
+use crate::memory::reserve;
 use crate::world::state::State;
 
 /// What a step started from.

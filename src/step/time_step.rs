@@ -9,9 +9,9 @@ use lahar_plugin_abi::LAHAR_POINT_FAILED;
 
 use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
+use crate::material::scratch::with_scratch;
 use crate::particles::CHUNK;
-use crate::world::options::Options;
-use crate::world::scratch::with_scratch;
+use crate::step::options::Options;
 use crate::world::state::{Body, State};
 
 /// What limits the next time step.

@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use crate::grid::Lanes;
+use crate::background::Lanes;
 use crate::simd::{Kernel, LANES, Vector};
 use crate::world::state::State;
 

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Place, Result, Status};
+use crate::material::scratch::with_scratch;
 use crate::material::{Input, Material};
+use crate::memory::reserve;
 use crate::particles::seeding::{Fill, Region, fill};
-use crate::particles::{CHUNK, Extras, Layout, Particles, reserve};
+use crate::particles::{CHUNK, Extras, Layout, Particles};
 use crate::shape::ShapeKind;
 use crate::step::locate::FARTHEST;
+use crate::step::options::Options;
 use crate::tensor::Mat3;
 
 use super::host_arrays::{ParticleArrays, Strided, Strides};
-use super::options::Options;
-use super::scratch::with_scratch;
 use super::state::{Body, Sizes, State};
 
 /// Most particles of a body.

@@ -4,23 +4,20 @@
 
 pub mod bodies;
 pub mod conditions;
-pub mod dispatch;
 pub mod fields;
-pub mod hooks;
 pub mod host_arrays;
-pub mod options;
 pub mod queries;
-pub mod scratch;
 pub mod state;
 pub mod statics;
 
-use std::path::Path;
+pub use crate::step::{hooks, options};
+
 use std::sync::Arc;
 
+use crate::background::GridStats;
 use crate::boundary::Wall;
 use crate::context::{Context, LogLevel};
 use crate::error::{Error, Place, Result, Status};
-use crate::grid::GridStats;
 use crate::material::{Capsule, Material};
 use crate::particles::FieldInfo;
 use crate::particles::fields::NODE_FIELDS;
@@ -511,11 +508,6 @@ impl World {
     /// Mass-weighted mean of a node field at a point; false and zeros where there is no material.
     pub fn sample(&self, field: &str, point: &[f64], out: &mut [f64]) -> Result<bool> {
         on!(&self, s => s.sample(field, point, out))
-    }
-
-    /// Writes the particles of all bodies to a VTP file (XML, compressed).
-    pub fn write_vtp(&self, path: &Path) -> Result<()> {
-        crate::output::vtk::write(self, path)
     }
 }
 

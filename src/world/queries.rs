@@ -1,7 +1,7 @@
 //! What a world tells: totals, grid, samples.
 
+use crate::background::GridStats;
 use crate::error::{Error, Result};
-use crate::grid::GridStats;
 use crate::particles::fields::NODE_FIELDS;
 use crate::step::locate::FARTHEST;
 

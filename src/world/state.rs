@@ -2,30 +2,31 @@
 
 use std::sync::Arc;
 
+use crate::background::key::split_node;
+use crate::background::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::boundary::Wall;
 use crate::context::Context;
 use crate::error::{Error, Place, Result};
-use crate::grid::key::split_node;
-use crate::grid::{Grid, GridPolicy, Key, Run, TileNode, Tiles};
 use crate::material::Material;
-use crate::particles::{ChunkMut, Particles, for_each_task, reserve};
+use crate::material::scratch::{Scratch, with_buffers};
+use crate::memory::reserve;
+use crate::particles::{ChunkMut, Particles, for_each_task};
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::simd::{Isa, Real, each};
 use crate::step::average_dilation::Patches;
 use crate::step::filter_velocities::Filtered;
 use crate::step::grid_to_particles::GatherKernel;
+use crate::step::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
+use crate::step::kernels::Kernels;
 use crate::step::locate::Sorting;
+use crate::step::options::Options;
 use crate::step::retry::Start;
 use crate::step::time_step::Limits;
 use crate::step::update_stress::{Outcome, Unreliable, Wish};
 use crate::transfer::TransferKind;
 
 use super::conditions::Conditions;
-use super::dispatch::Kernels;
-use super::hooks::{HOOK_POINTS, Hook, HookArguments, HookPoint};
-use super::options::Options;
-use super::scratch::{Scratch, with_buffers};
 
 /// Below this number of particles a step is serial: threads would cost more than they bring.
 const SERIAL_BELOW: usize = 4096;

@@ -1,7 +1,7 @@
 //! Statics by dynamics: how far from equilibrium, steps until it is reached, and initial stresses.
 
+use crate::background::key::block_nodes;
 use crate::error::{Error, Result, Status};
-use crate::grid::key::block_nodes;
 use crate::material::Kinematics;
 use crate::step::apply_boundaries::for_reached_nodes;
 use crate::step::apply_boundaries::prescribed::for_nodes_inside;

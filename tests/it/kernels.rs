@@ -3,6 +3,7 @@
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
 use lahar::error::Status;
+use lahar::material::scratch::with_scratch;
 use lahar::material::{Input, Material, StressBatch};
 use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::simd::Isa;
@@ -14,7 +15,6 @@ use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::host_arrays::{ParticleArrays, Strided};
 use lahar::world::options::Options;
-use lahar::world::scratch::with_scratch;
 use nalgebra::{SMatrix, SVector};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The grid follows the material: policies agree, places far away are as good as any, flights cost no memory.
 
+use lahar::background::GridPolicy;
 use lahar::boundary::{Wall, WallKind};
 use lahar::error::Status;
-use lahar::grid::GridPolicy;
 use lahar::particles::seeding::Region;
 use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;

@@ -1,6 +1,7 @@
 //! VTP files hold every field of every body, and open again.
 
 use lahar::error::Status;
+use lahar::output::vtk;
 use lahar::particles::seeding::Region;
 use lahar::world::options::Options;
 use vtkio::model::{Attribute, DataSet, Vtk};
@@ -21,7 +22,7 @@ fn a_vtp_file_opens_again_with_every_field() {
     let folder = std::env::temp_dir().join(format!("lahar-vtp-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a temporary folder");
     let path = folder.join("two.vtp");
-    world.write_vtp(&path).expect("a written file");
+    vtk::write(&world, &path).expect("a written file");
     let text = std::fs::read_to_string(&path).expect("XML");
     assert!(text.contains("vtkZLibDataCompressor"), "the file must be compressed");
     let DataSet::PolyData { pieces, .. } = Vtk::import(&path).expect("a VTP file").data else {
@@ -53,9 +54,9 @@ fn a_vtp_file_opens_again_with_every_field() {
         }
     }
     std::fs::remove_dir_all(folder).expect("removed");
-    let error = world.write_vtp("/no/such/folder/x.vtp".as_ref()).expect_err("no folder");
+    let error = vtk::write(&world, "/no/such/folder/x.vtp".as_ref()).expect_err("no folder");
     assert_eq!(error.status, Status::File);
     assert!(error.message.contains("/no/such/folder/x.vtp"));
-    let error = world.write_vtp("x.vtk".as_ref()).expect_err("wrong ending");
+    let error = vtk::write(&world, "x.vtk".as_ref()).expect_err("wrong ending");
     assert!(error.status == Status::InvalidArgument && error.message.contains(".vtp"));
 }

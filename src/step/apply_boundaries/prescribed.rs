@@ -4,9 +4,9 @@
 
 use std::ops::Range;
 
+use crate::background::key::block_nodes;
+use crate::background::{EDGE, Key, Lanes};
 use crate::boundary::PrescribedVelocity;
-use crate::grid::key::block_nodes;
-use crate::grid::{EDGE, Key, Lanes};
 use crate::world::state::{Space, State};
 
 use super::ROUND_OFF;

@@ -1,11 +1,11 @@
 //! The plan that sorts all particles by block (Morton order) and cell, with a stable counting sort.
 
 use super::{Plan, SORTING, place_inside};
+use crate::background::index::Index;
+use crate::background::key::{block_nodes, morton_order};
+use crate::background::{Key, NONE, Run};
 use crate::error::Result;
-use crate::grid::index::Index;
-use crate::grid::key::{block_nodes, morton_order};
-use crate::grid::{Key, NONE, Run};
-use crate::particles::{refill, reserve};
+use crate::memory::{refill, reserve};
 use crate::world::state::State;
 
 /// Buffers of the full sort.

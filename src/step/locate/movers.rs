@@ -4,11 +4,12 @@
 //! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
 
 use super::{Plan, SORTING, place_inside};
+use crate::background::index::Index;
+use crate::background::key::morton_order;
+use crate::background::{Key, NONE, Run};
 use crate::error::Result;
-use crate::grid::index::Index;
-use crate::grid::key::morton_order;
-use crate::grid::{Key, NONE, Run};
-use crate::particles::{Span, in_order, refill, reserve};
+use crate::memory::{refill, reserve};
+use crate::particles::{Span, in_order};
 use crate::world::state::{Body, Space, State};
 
 /// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.

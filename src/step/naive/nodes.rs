@@ -2,8 +2,8 @@
 
 use crate::boundary::Wall;
 use crate::shape::{ShapeKind, WallTreatment, textbook::weight_between};
+use crate::step::options::Options;
 use crate::transfer::TransferKind;
-use crate::world::options::Options;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::{array::from_fn, collections::BTreeMap};
 

@@ -4,9 +4,10 @@ use std::cell::RefCell;
 
 use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY};
 
-use crate::grid::TileNode;
+use crate::background::TileNode;
 use crate::material::{Input, Kinematics, Material, Model, StressBatch};
-use crate::particles::{Aligned, CHUNK, Layout, stride_of};
+use crate::memory::{Aligned, stride_of};
+use crate::particles::{CHUNK, Layout};
 
 /// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
 pub struct Scratch<'a> {

@@ -1,8 +1,9 @@
 //! The threads of a context: a rayon pool whose threads are joined, which rayon's own do not offer.
 
-use super::log::{self, LogQueue};
 use crate::error::{Error, Result, Status};
-use crate::ffi;
+use crate::log::{self, LogQueue};
+use crate::platform;
+use crate::simd::environment;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::mem;
 use std::process;
@@ -10,22 +11,22 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
 /// A pool (until it is dropped) and the handles of its threads.
-pub(super) struct Pool {
+pub(crate) struct Pool {
     pool: Option<ThreadPool>,
     handles: Vec<JoinHandle<()>>,
     process: u32,
 }
 
 impl Pool {
-    pub(super) fn new(threads: usize, log: &Arc<LogQueue>) -> Result<Pool> {
+    pub(crate) fn new(threads: usize, log: &Arc<LogQueue>) -> Result<Pool> {
         let mut handles = Vec::with_capacity(threads);
         let queue = Arc::clone(log);
         let built = ThreadPoolBuilder::new()
             .num_threads(threads)
             .start_handler(move |_| {
                 // Threads inherit the floating-point environment of the thread that starts them, traps included.
-                ffi::fpenv::set_default();
-                ffi::entry::mark_silent_thread();
+                environment::set_default();
+                platform::silence();
                 log::adopt(&queue);
             })
             .spawn_handler(|worker| {
@@ -46,23 +47,23 @@ impl Pool {
         }
     }
 
-    pub(super) fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
+    pub(crate) fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(f),
             None => f(),
         }
     }
 
-    pub(super) fn is_inside(&self) -> bool {
+    pub(crate) fn is_inside(&self) -> bool {
         self.worker().is_some()
     }
 
     /// Number of the running thread, if it belongs to this pool.
-    pub(super) fn worker(&self) -> Option<usize> {
+    pub(crate) fn worker(&self) -> Option<usize> {
         self.pool.as_ref().and_then(ThreadPool::current_thread_index)
     }
 
-    pub(super) fn check_process(&self) -> Result<()> {
+    pub(crate) fn check_process(&self) -> Result<()> {
         if process::id() == self.process {
             return Ok(());
         }

@@ -1,6 +1,6 @@
 //! The one table that turns options into kernels.
 
-use crate::grid::Grid;
+use crate::background::Grid;
 use crate::shape::cubic_bspline::CubicBspline;
 use crate::shape::gimp::Gimp;
 use crate::shape::linear::Linear;
@@ -10,9 +10,9 @@ use crate::shape::quadratic_bspline::QuadraticBspline;
 use crate::shape::stencil::{At, ShapeFunction};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_chunk};
+use crate::step::options::Options;
 use crate::step::particles_to_grid::{Scatter, scatter_tiles};
 use crate::transfer::TransferKind;
-use crate::world::options::Options;
 
 /// Calls the visitor with number and weight of every node of the stencil of a place; false if a node's block is not active.
 pub type NodesAt<const D: usize> = fn(&Grid<D>, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;

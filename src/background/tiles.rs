@@ -6,7 +6,7 @@
 use super::blocks::Neighbours;
 use super::{EDGE, Grid, Lanes, NONE, room};
 use crate::error::Result;
-use crate::particles::{refill, reserve_exact};
+use crate::memory::{refill, reserve_exact};
 use crate::simd::Vector;
 
 /// What memory is for, if there is none.

@@ -9,7 +9,7 @@ use std::ffi::c_int;
 use std::mem::MaybeUninit;
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
-compile_error!("FE_DFL_ENV is not known for this system: add it to src/ffi/fpenv.rs");
+compile_error!("FE_DFL_ENV is not known for this system: add it to src/simd/environment.rs");
 
 /// Room for a `fenv_t`: 32 bytes on x86-64, 8 on AArch64; larger than any known one.
 #[derive(Clone, Copy)]
@@ -93,14 +93,14 @@ pub(crate) fn control() -> Control {
 }
 
 /// While it lives, this thread runs in the default environment; the drop puts the host's back.
-pub(super) struct Guard {
+pub(crate) struct Guard {
     host: Environment,
     outer: Option<Environment>,
 }
 
 impl Guard {
     /// Saves the host's environment and sets the default one.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let host = current();
         let outer = HOST.try_with(|h| h.replace(Some(host))).unwrap_or(None);
         set_default();
@@ -116,7 +116,7 @@ impl Drop for Guard {
 }
 
 /// Calls the host's code in the host's environment.
-pub(super) fn with_host<R>(f: impl FnOnce() -> R) -> R {
+pub(crate) fn with_host<R>(f: impl FnOnce() -> R) -> R {
     let host = HOST.try_with(Cell::get).unwrap_or(None);
     if let Some(environment) = &host {
         restore(environment);

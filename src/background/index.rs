@@ -3,7 +3,7 @@
 use super::blocks::NONE;
 use super::key::Key;
 use crate::error::Result;
-use crate::particles::reserve;
+use crate::memory::reserve;
 
 /// Positions of keys in a list that the caller keeps; at most half full.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Options of a world, their defaults and their rules.
 
+use crate::background::GridPolicy;
 use crate::error::{Error, Result, Status};
-use crate::grid::GridPolicy;
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::StepOrder;
 use crate::step::locate::FARTHEST;

@@ -4,7 +4,7 @@ use super::index::Index;
 use super::key::{Key, block_nodes, morton_order, split_node};
 use super::{EDGE, Lanes, room};
 use crate::error::Result;
-use crate::particles::{reserve, reserve_exact};
+use crate::memory::{reserve, reserve_exact};
 
 /// No block.
 pub const NONE: u32 = u32::MAX;

@@ -1,6 +1,6 @@
 //! Hooks: calls into the middle of a step, for Rust callers and tests. A step that is repeated smaller calls them again.
 
-use crate::grid::Grid;
+use crate::background::Grid;
 
 /// Where in a step a hook runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
