@@ -4,13 +4,12 @@ use crate::error::{Error, Result, Status};
 pub use crate::log::{LogLevel, LogSink};
 use crate::log::{LogQueue, LogScope};
 use crate::material::{Model, Plugin};
-use crate::parallel::Pool;
+use crate::parallel::{Team, Threads};
 pub use crate::plugin::RustEntry;
 use crate::plugin::{self, StaticEntry};
 use crate::simd::Isa;
 use lahar_plugin_abi::{LAHAR_CAPABILITY_MAY_PRINT, LAHAR_CAPABILITY_MAY_STOP};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
 /// Largest number of threads of a context.
@@ -18,9 +17,8 @@ pub const MAX_THREADS: usize = 1024;
 
 /// Threads, log and loaded plugins. Worlds and materials keep their context alive.
 pub struct Context {
-    pool: Option<Pool>,
+    threads: Arc<Threads>,
     isa: Isa,
-    used: Vec<AtomicBool>,
     log: Arc<LogQueue>,
     plugins: RwLock<Vec<&'static Plugin>>,
     capsules: RwLock<Option<PathBuf>>,
@@ -45,8 +43,7 @@ impl Context {
             None => threads_of_environment()?,
         };
         let log = Arc::new(LogQueue::default());
-        let pool = if threads > 1 { Some(Pool::new(threads, &log)?) } else { None };
-        let used = (0..threads).map(|_| AtomicBool::new(false)).collect();
+        let threads = Threads::new(threads, &log)?;
         let capsules = match std::env::var_os("LAHAR_CAPSULES") {
             Some(folder) if !folder.is_empty() => {
                 Some(checked_folder(Path::new(&folder), "LAHAR_CAPSULES")?)
@@ -54,7 +51,7 @@ impl Context {
             _ => None,
         };
         let (plugins, capsules) = (RwLock::default(), RwLock::new(capsules));
-        Ok(Arc::new(Context { pool, isa, used, log, plugins, capsules }))
+        Ok(Arc::new(Context { threads, isa, log, plugins, capsules }))
     }
 
     /// The instruction set that kernels use: what `LAHAR_SIMD` asks for (`scalar`, `avx2`, `avx512`), or the best that the processor has.
@@ -64,55 +61,42 @@ impl Context {
 
     /// Number of threads that run a step, the calling one included if it is the only one.
     pub fn threads(&self) -> usize {
-        self.used.len()
+        self.threads.count()
     }
 
     /// How many distinct threads have run tasks of this context so far; see [`Context::mark_worker`].
     pub fn threads_used(&self) -> usize {
-        self.used.iter().filter(|u| u.load(Ordering::Relaxed)).count()
+        self.threads.used()
+    }
+
+    /// The threads, to be shared with worlds.
+    pub fn team(&self) -> Team {
+        Team::new(&self.threads)
     }
 
     /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go through.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
-        match &self.pool {
-            Some(pool) => pool.install(f),
-            None => {
-                let _scope = LogScope::enter(&self.log);
-                f()
-            }
-        }
+        self.threads.install(f)
     }
 
-    /// Runs `a` and `b`, at the same time if there are threads; the calling code must be inside [`Context::install`].
-    ///
-    /// With one thread both run here one after the other; `rayon::join` would start rayon's global pool there.
+    /// Runs `a` and `b`, at the same time if there are threads; the calling code must be inside
+    /// [`Context::install`].
     pub fn join<A: Send, B: Send>(
         &self,
         a: impl FnOnce() -> A + Send,
         b: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        match &self.pool {
-            Some(pool) if pool.is_inside() => rayon::join(a, b),
-            _ => (a(), b()),
-        }
+        self.threads.join(a, b)
     }
 
-    /// Notes that the running thread has worked for this context. Tasks of the engine call it.
+    /// Notes that the running thread has worked for this context.
     pub fn mark_worker(&self) {
-        let worker = match &self.pool {
-            Some(pool) => pool.worker(),
-            None => Some(0),
-        };
-        if let Some(used) = worker.and_then(|w| self.used.get(w))
-            && !used.load(Ordering::Relaxed)
-        {
-            used.store(true, Ordering::Relaxed);
-        }
+        self.threads.mark();
     }
 
     /// Error [`Status::Threads`] if this process was forked after the threads had been started: they did not come along.
     pub fn check_process(&self) -> Result<()> {
-        self.pool.as_ref().map_or(Ok(()), Pool::check_process)
+        self.threads.check_process()
     }
 
     /// Loads a plugin into this context and returns its index in [`Context::plugins`].

@@ -1,8 +1,8 @@
-//! The set of active blocks, their neighbours and their node records.
+//! The set of active blocks: keys, slots, neighbours. It knows nothing of what the nodes hold.
 
 use super::index::Index;
 use super::key::{Key, block_nodes, morton_order, split_node};
-use super::{EDGE, Lanes, room};
+use super::{EDGE, room};
 use crate::error::Result;
 use crate::memory::{reserve, reserve_exact};
 
@@ -18,78 +18,55 @@ const SMALL: usize = 64;
 /// Corners of a block's neighbourhood: bit d of the position stands for a step along axis d.
 pub type Neighbours = [u32; 8];
 
-/// What a grid consists of at the moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GridStats {
-    /// Nodes along the edge of a block.
-    pub block_edge: i64,
-    /// Blocks that exist.
-    pub active_blocks: i64,
-    /// Nodes of those blocks.
-    pub active_nodes: i64,
-    /// Memory of nodes, tiles and tables [bytes].
-    pub bytes: i64,
-    /// Blocks that appeared in the last step.
-    pub blocks_created: i64,
-    /// Blocks that vanished in the last step.
-    pub blocks_removed: i64,
-}
-
 /// Blocks, each with 4^D nodes in row-major order (last axis fastest).
 ///
-/// A block keeps its slot, and with it the place of its node records, from the step in which it appears until it vanishes. Tables and
-/// records go by slot; a free slot has no neighbours and nodes without mass. Hosts know nodes by numbers that go by the
-/// Morton order of the blocks: see [`Grid::record`].
+/// A block keeps its slot, and with it the place of its nodes' records, from the step in which it
+/// appears until it vanishes. Tables and records go by slot; a free slot has no neighbours and nodes
+/// without mass. Hosts know nodes by numbers that go by the Morton order of the blocks: see
+/// [`Blocks::record`].
+///
+/// An active slot is **owned**, or a **ghost**: a block that tiles here reach and that somebody else
+/// updates. Until work is shared among processes all are owned.
 #[derive(Debug)]
-pub struct Grid<const D: usize> {
-    /// Distance of nodes [m].
-    pub spacing: f64,
-    /// Position of node 0 [m].
-    pub origin: [f64; D],
+pub struct Blocks<const D: usize> {
     keys: Vec<Key<D>>,
     index: Index,
     order: Vec<u32>,
     place: Vec<u32>,
     free: Vec<u32>,
+    ghost: Vec<bool>,
     /// For each slot the slots of the blocks that its tile reaches, itself first.
     pub forward: Vec<Neighbours>,
     /// For each slot the slots of the blocks whose tiles reach it, itself first.
     pub backward: Vec<Neighbours>,
-    /// R0: [m, mv] after the scatter, [m, v] after the grid update.
-    pub velocity: Vec<Lanes>,
-    /// R1: [–, Δv] after the grid update, [–, v] of the second scatter in MUSL.
-    pub increment: Vec<Lanes>,
-    /// [–, f]: force of the particles on the nodes [N].
-    pub force: Vec<Lanes>,
     created: usize,
     removed: usize,
     reached: Vec<bool>,
     fresh: Vec<Key<D>>,
+    freed: Vec<u32>,
 }
 
-impl<const D: usize> Grid<D> {
-    /// A grid without blocks.
-    pub fn new(spacing: f64, origin: [f64; D]) -> Self {
+impl<const D: usize> Default for Blocks<D> {
+    fn default() -> Self {
         Self {
-            spacing,
-            origin,
             keys: Vec::new(),
             index: Index::default(),
             order: Vec::new(),
             place: Vec::new(),
             free: Vec::new(),
+            ghost: Vec::new(),
             forward: Vec::new(),
             backward: Vec::new(),
-            velocity: Vec::new(),
-            increment: Vec::new(),
-            force: Vec::new(),
             created: 0,
             removed: 0,
             reached: Vec::new(),
             fresh: Vec::new(),
+            freed: Vec::new(),
         }
     }
+}
 
+impl<const D: usize> Blocks<D> {
     /// Key of the block in each slot; free slots have some key.
     pub fn keys(&self) -> &[Key<D>] {
         &self.keys
@@ -105,9 +82,17 @@ impl<const D: usize> Grid<D> {
         &self.place
     }
 
-    /// The keys by slot, with the records R0 and R1 of their nodes to write, and the forces.
-    pub fn keys_and_records(&mut self) -> (&[Key<D>], &mut [Lanes], &mut [Lanes], &[Lanes]) {
-        (&self.keys, &mut self.velocity, &mut self.increment, &self.force)
+    /// Slots of the blocks that are updated here, in Morton order.
+    pub fn owned(&self) -> impl Iterator<Item = usize> {
+        let slots = self.order.iter().map(|slot| *slot as usize);
+        slots.filter(|slot| !self.ghost[*slot])
+    }
+
+    /// Makes those of the active blocks ghosts whose keys are chosen, and all others owned.
+    pub fn set_ghosts(&mut self, is_ghost: impl Fn(&Key<D>) -> bool) {
+        for slot in self.order.iter().map(|slot| *slot as usize) {
+            self.ghost[slot] = is_ghost(&self.keys[slot]);
+        }
     }
 
     /// Slot of the block with this key.
@@ -120,8 +105,11 @@ impl<const D: usize> Grid<D> {
     pub fn find_near(&self, from: u32, key: &Key<D>) -> Option<u32> {
         let old = &self.keys[from as usize];
         let (mut up, mut down) = (0, 0);
+        if key.layer != old.layer {
+            return self.find(key);
+        }
         for d in 0..D {
-            match key[d] - old[d] {
+            match key.at[d] - old.at[d] {
                 0 => {}
                 1 => up |= 1 << d,
                 -1 => down |= 1 << d,
@@ -131,11 +119,6 @@ impl<const D: usize> Grid<D> {
         let ahead = self.forward[from as usize][up];
         let found = if ahead == NONE { NONE } else { self.backward[ahead as usize][down] };
         (found != NONE).then_some(found)
-    }
-
-    /// Position of a node along one axis [m].
-    pub fn node_position(&self, axis: usize, node: i64) -> f64 {
-        self.origin[axis] + node as f64 * self.spacing
     }
 
     /// Number of active nodes.
@@ -149,13 +132,14 @@ impl<const D: usize> Grid<D> {
         self.order[node / nodes] as usize * nodes + node % nodes
     }
 
-    /// Number of a node (place of its block in Morton order times 4^D, plus its place in the block), if its block is active.
-    pub fn find_node(&self, index: [i64; D]) -> Option<usize> {
-        let mut key = [0i32; D];
+    /// Number of a node of a layer (place of its block in Morton order times 4^D, plus its place in the
+    /// block), if its block is active.
+    pub fn find_node(&self, layer: u32, index: [i64; D]) -> Option<usize> {
+        let mut key = Key { layer, at: [0; D] };
         let mut local = 0;
         for d in 0..D {
             let (block, place) = split_node(index[d]);
-            key[d] = i32::try_from(block).ok()?;
+            key.at[d] = i32::try_from(block).ok()?;
             local = local * EDGE + place;
         }
         self.find(&key).map(|slot| self.place[slot as usize] as usize * block_nodes(D) + local)
@@ -168,32 +152,29 @@ impl<const D: usize> Grid<D> {
         let mut local = node % block_nodes(D);
         let mut index = [0; D];
         for d in (0..D).rev() {
-            index[d] = i64::from(key[d]) * EDGE as i64 + (local % EDGE) as i64;
+            index[d] = i64::from(key.at[d]) * EDGE as i64 + (local % EDGE) as i64;
             local /= EDGE;
         }
         Some(index)
     }
 
-    /// Numbers of blocks and nodes, and the memory of the grid's own tables.
-    pub fn stats(&self) -> GridStats {
-        let lanes = self.velocity.capacity() + self.increment.capacity() + self.force.capacity();
+    /// Blocks that the last change made, and that it removed.
+    pub fn turnover(&self) -> (usize, usize) {
+        (self.created, self.removed)
+    }
+
+    /// Memory [bytes].
+    pub fn bytes(&self) -> usize {
         let tables = self.forward.capacity() + self.backward.capacity();
         let keys = self.keys.capacity() + self.fresh.capacity();
-        let slots = self.order.capacity() + self.place.capacity() + self.free.capacity();
-        let bytes = lanes * size_of::<Lanes>()
-            + tables * size_of::<Neighbours>()
+        let slots = [&self.order, &self.place, &self.free, &self.freed];
+        let slots: usize = slots.into_iter().map(Vec::capacity).sum();
+        tables * size_of::<Neighbours>()
             + keys * size_of::<Key<D>>()
             + slots * size_of::<u32>()
             + self.reached.capacity()
-            + self.index.bytes();
-        GridStats {
-            block_edge: EDGE as i64,
-            active_blocks: self.order.len() as i64,
-            active_nodes: self.node_count() as i64,
-            bytes: bytes as i64,
-            blocks_created: self.created as i64,
-            blocks_removed: self.removed as i64,
-        }
+            + self.ghost.capacity()
+            + self.index.bytes()
     }
 
     /// Forgets what the last change created and removed.
@@ -201,27 +182,56 @@ impl<const D: usize> Grid<D> {
         (self.created, self.removed) = (0, 0);
     }
 
-    /// Makes exactly the blocks that the tiles of these owners reach active; with `keep`, the present ones too. An owner
-    /// may be named more than once. Slots of blocks that stay may change if most slots are free.
-    ///
-    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were or as they shall be; the call can be
-    /// repeated.
-    pub fn set_owners(&mut self, owners: &[Key<D>], keep: bool) -> Result<()> {
+    /// First half of a change: finds out which blocks shall be active, those that the tiles of the
+    /// owners reach, and with `keep` the present ones too. An owner may be named more than once. Gives
+    /// the number of slots that the second half needs.
+    pub fn plan(&mut self, owners: &[Key<D>], keep: bool) -> Result<usize> {
         self.reach(owners)?;
-        let gone = self.order.iter().filter(|slot| !keep && !self.reached[**slot as usize]).count();
-        let blocks = self.order.len() - gone + self.fresh.len();
-        if blocks > self.keys.len() {
-            self.resize(room(blocks))?;
+        if keep {
+            self.order.iter().for_each(|slot| self.reached[*slot as usize] = true);
         }
-        if gone > 0 {
+        self.removed = self.order.iter().filter(|slot| !self.reached[**slot as usize]).count();
+        self.created = self.fresh.len();
+        let blocks = self.order.len() - self.removed + self.created;
+        Ok(if blocks > self.keys.len() { room(blocks) } else { self.keys.len() })
+    }
+
+    /// Second half: there are `slots` slots, and exactly the planned blocks are active. Slots that were
+    /// freed are listed in [`Blocks::freed`].
+    ///
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were.
+    pub fn carry_out(&mut self, slots: usize) -> Result<()> {
+        self.freed.clear();
+        if slots > self.keys.len() {
+            self.resize(slots)?;
+        }
+        if self.removed > 0 {
             self.remove_unreached();
         }
         self.create_fresh();
-        (self.created, self.removed) = (self.fresh.len(), gone);
-        if self.keys.len() > SMALL && 4 * blocks < self.keys.len() {
-            self.compact()?;
-        }
         Ok(())
+    }
+
+    /// Slots of the blocks that the last change removed.
+    pub fn freed(&self) -> &[u32] {
+        &self.freed
+    }
+
+    /// The same blocks in new slots, in Morton order, with as many free ones; None unless most slots are
+    /// free now.
+    pub fn compacted(&self) -> Result<Option<Self>> {
+        if self.keys.len() <= SMALL || 4 * self.order.len() >= self.keys.len() {
+            return Ok(None);
+        }
+        let mut fresh = Vec::new();
+        reserve(&mut fresh, self.order.len(), WHAT)?;
+        fresh.extend(self.order.iter().map(|slot| self.keys[*slot as usize]));
+        let mut small = Self::default();
+        small.resize(room(2 * fresh.len()))?;
+        let (created, removed) = (self.created, self.removed);
+        small = Self { fresh, created, removed, ..small };
+        small.create_fresh();
+        Ok(Some(small))
     }
 
     /// Marks the blocks that the owners' tiles reach, and lists those that do not exist yet, along the Morton curve.
@@ -251,36 +261,31 @@ impl<const D: usize> Grid<D> {
 
     /// More slots, all free.
     fn resize(&mut self, slots: usize) -> Result<()> {
-        let (old, nodes) = (self.keys.len(), slots * block_nodes(D));
-        for record in [&mut self.velocity, &mut self.increment, &mut self.force] {
-            reserve_exact(record, nodes, WHAT)?;
-        }
+        let old = self.keys.len();
         for table in [&mut self.forward, &mut self.backward] {
             reserve_exact(table, slots, WHAT)?;
         }
-        for list in [&mut self.order, &mut self.place, &mut self.free] {
+        for list in [&mut self.order, &mut self.place, &mut self.free, &mut self.freed] {
             reserve_exact(list, slots, WHAT)?;
         }
         reserve_exact(&mut self.keys, slots, WHAT)?;
         reserve_exact(&mut self.fresh, slots, WHAT)?;
         reserve_exact(&mut self.reached, slots, WHAT)?;
+        reserve_exact(&mut self.ghost, slots, WHAT)?;
         self.index.reserve(slots, &self.keys)?;
-        for record in [&mut self.velocity, &mut self.increment, &mut self.force] {
-            record.resize(nodes, [0.0; 4]);
-        }
         for table in [&mut self.forward, &mut self.backward] {
             table.resize(slots, [NONE; 8]);
         }
-        self.keys.resize(slots, [0; D]);
+        self.keys.resize(slots, Key { layer: 0, at: [0; D] });
         self.place.resize(slots, NONE);
         self.reached.resize(slots, true);
+        self.ghost.resize(slots, false);
         self.free.extend((old as u32..slots as u32).rev());
         Ok(())
     }
 
     /// Frees the slots of blocks that no tile reaches.
     fn remove_unreached(&mut self) {
-        let nodes = block_nodes(D);
         for slot in self.order.iter().map(|slot| *slot as usize) {
             if self.reached[slot] {
                 continue;
@@ -297,10 +302,9 @@ impl<const D: usize> Grid<D> {
             (self.forward[slot], self.backward[slot]) = ([NONE; 8], [NONE; 8]);
             self.index.remove(slot as u32, &self.keys);
             self.place[slot] = NONE;
+            self.ghost[slot] = false;
             self.free.push(slot as u32);
-            for record in [&mut self.velocity, &mut self.increment, &mut self.force] {
-                record[slot * nodes..(slot + 1) * nodes].fill([0.0; 4]);
-            }
+            self.freed.push(slot as u32);
         }
         self.order.retain(|slot| self.reached[*slot as usize]);
     }
@@ -346,51 +350,50 @@ impl<const D: usize> Grid<D> {
             }
         }
     }
-
-    /// Gives memory back: the blocks get new slots, in Morton order, and as many free ones. Their records are lost.
-    fn compact(&mut self) -> Result<()> {
-        let mut fresh = Vec::new();
-        reserve(&mut fresh, self.order.len(), WHAT)?;
-        fresh.extend(self.order.iter().map(|slot| self.keys[*slot as usize]));
-        let (created, removed) = (self.created, self.removed);
-        let mut small = Self::new(self.spacing, self.origin);
-        small.resize(room(2 * fresh.len()))?;
-        *self = Self { fresh, created, removed, ..small };
-        self.create_fresh();
-        Ok(())
-    }
 }
 
 fn step<const D: usize>(key: &Key<D>, corner: usize, sign: i32) -> Key<D> {
-    std::array::from_fn(|d| key[d] + sign * (corner >> d & 1) as i32)
+    let at = std::array::from_fn(|d| key.at[d] + sign * (corner >> d & 1) as i32);
+    Key { at, ..*key }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const fn key<const D: usize>(at: [i32; D]) -> Key<D> {
+        Key { layer: 0, at }
+    }
+
+    /// Both halves of a change, and the compaction.
+    fn set_owners<const D: usize>(grid: &mut Blocks<D>, owners: &[Key<D>], keep: bool) {
+        let slots = grid.plan(owners, keep).expect("memory");
+        grid.carry_out(slots).expect("memory");
+        if let Some(small) = grid.compacted().expect("memory") {
+            *grid = small;
+        }
+    }
+
     #[test]
     fn blocks_appear_with_their_neighbours_and_vanish_behind() {
-        let mut grid = Grid::<2>::new(0.5, [0.0, 0.0]);
-        grid.set_owners(&[[-1, 0]], false).expect("memory");
-        let stats = grid.stats();
-        assert_eq!((stats.active_blocks, stats.blocks_created, stats.blocks_removed), (4, 4, 0));
-        grid.set_owners(&[[0, 0]], false).expect("memory");
-        let stats = grid.stats();
-        assert_eq!((stats.active_blocks, stats.blocks_created, stats.blocks_removed), (4, 2, 2));
-        grid.set_owners(&[[5, 5]], true).expect("memory");
-        assert_eq!(grid.stats().active_blocks, 8);
-        let b = grid.find(&[0, 0]).expect("an owner is active") as usize;
+        let mut grid = Blocks::<2>::default();
+        set_owners(&mut grid, &[key([-1, 0])], false);
+        assert_eq!((grid.order.len(), grid.turnover()), (4, (4, 0)));
+        set_owners(&mut grid, &[key([0, 0])], false);
+        assert_eq!((grid.order.len(), grid.turnover(), grid.freed.len()), (4, (2, 2), 2));
+        set_owners(&mut grid, &[key([5, 5])], true);
+        assert_eq!(grid.order.len(), 8);
+        let b = grid.find(&key([0, 0])).expect("an owner is active") as usize;
         assert_eq!(grid.forward[b][0] as usize, b);
-        assert_eq!(grid.keys()[grid.forward[b][3] as usize], [1, 1]);
+        assert_eq!(grid.keys()[grid.forward[b][3] as usize], key([1, 1]));
         assert_eq!(grid.backward[b][1], NONE);
     }
 
     /// Order, index and neighbours are those of a grid that is made at once.
-    fn check<const D: usize>(grid: &Grid<D>, owners: &[Key<D>]) {
-        let mut whole = Grid::<D>::new(1.0, [0.0; D]);
-        whole.set_owners(owners, false).expect("memory");
-        let keys = |g: &Grid<D>| g.order.iter().map(|s| g.keys[*s as usize]).collect::<Vec<_>>();
+    fn check<const D: usize>(grid: &Blocks<D>, owners: &[Key<D>]) {
+        let mut whole = Blocks::<D>::default();
+        set_owners(&mut whole, owners, false);
+        let keys = |g: &Blocks<D>| g.order.iter().map(|s| g.keys[*s as usize]).collect::<Vec<_>>();
         assert_eq!(keys(grid), keys(&whole));
         assert_eq!(grid.order.len() + grid.free.len(), grid.keys.len());
         assert!(grid.free.iter().all(|s| grid.place[*s as usize] == NONE));
@@ -408,7 +411,7 @@ mod tests {
 
     #[test]
     fn slots_that_come_and_go_equal_a_grid_made_at_once() {
-        let mut grid = Grid::<3>::new(1.0, [0.0; 3]);
+        let mut grid = Blocks::<3>::default();
         let mut seed = 1u32;
         let mut random = |n: u32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -418,32 +421,62 @@ mod tests {
             let (count, width) = if round % 20 == 19 { (3, 40) } else { (200, 6 + round as u32) };
             let coordinate = |random: &mut dyn FnMut(u32) -> i32| random(width) - 5;
             let owners: Vec<Key<3>> =
-                (0..count).map(|_| std::array::from_fn(|_| coordinate(&mut random))).collect();
-            grid.set_owners(&owners, false).expect("memory");
+                (0..count).map(|_| key(std::array::from_fn(|_| coordinate(&mut random)))).collect();
+            set_owners(&mut grid, &owners, false);
             check(&grid, &owners);
         }
     }
 
     #[test]
     fn a_neighbour_is_found_without_the_index() {
-        let mut grid = Grid::<3>::new(1.0, [0.0; 3]);
-        grid.set_owners(&[[0, 0, 0], [1, -1, 0], [9, 9, 9]], false).expect("memory");
-        let from = grid.find(&[0, 0, 0]).expect("an owner");
+        let mut grid = Blocks::<3>::default();
+        set_owners(&mut grid, &[[0, 0, 0], [1, -1, 0], [9, 9, 9]].map(key), false);
+        let from = grid.find(&key([0, 0, 0])).expect("an owner");
         for n in 0..125 {
-            let key = [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2];
+            let key = key([n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2]);
             assert_eq!(grid.find_near(from, &key), grid.find(&key), "{key:?}");
         }
-        assert_eq!(grid.find_near(from, &[9, 9, 9]), grid.find(&[9, 9, 9]));
+        assert_eq!(grid.find_near(from, &key([9, 9, 9])), grid.find(&key([9, 9, 9])));
     }
 
     #[test]
     fn a_node_is_found_by_its_index_and_back() {
-        let mut grid = Grid::<3>::new(1.0, [0.0; 3]);
-        grid.set_owners(&[[-2, 0, 7]], false).expect("memory");
+        let mut grid = Blocks::<3>::default();
+        set_owners(&mut grid, &[key([-2, 0, 7])], false);
         for index in [[-8, 0, 28], [-5, 3, 31], [-1, 7, 35]] {
-            let node = grid.find_node(index).expect("inside an active block");
+            let node = grid.find_node(0, index).expect("inside an active block");
             assert_eq!(grid.node_index(node), Some(index));
         }
-        assert_eq!(grid.find_node([0, 0, 0]), None);
+        assert_eq!(grid.find_node(0, [0, 0, 0]), None);
+    }
+
+    #[test]
+    fn layers_have_blocks_of_their_own_at_the_same_coordinates() {
+        let mut grid = Blocks::<2>::default();
+        let upper = Key { layer: 1, at: [0, 0] };
+        set_owners(&mut grid, &[key([0, 0]), upper], false);
+        assert_eq!(grid.order.len(), 8);
+        let slots = [key([0, 0]), upper].map(|key| grid.find(&key).expect("an owner"));
+        assert_ne!(slots[0], slots[1]);
+        for (layer, slot) in slots.into_iter().enumerate() {
+            let ahead = grid.forward[slot as usize][3] as usize;
+            assert_eq!(grid.keys()[ahead], Key { layer: layer as u32, at: [1, 1] });
+            assert_eq!(grid.find_near(slots[0], &grid.keys()[ahead]), Some(ahead as u32));
+        }
+        let layers: Vec<u32> = grid.owned().map(|slot| grid.keys()[slot].layer).collect();
+        assert_eq!(layers, [0, 0, 0, 0, 1, 1, 1, 1], "one layer after the other");
+        assert_ne!(grid.find_node(0, [2, 3]), grid.find_node(1, [2, 3]));
+    }
+
+    #[test]
+    fn ghosts_are_active_but_not_owned() {
+        let mut grid = Blocks::<2>::default();
+        set_owners(&mut grid, &[key([0, 0])], false);
+        assert_eq!(grid.owned().count(), 4);
+        grid.set_ghosts(|key| key.at[0] == 1);
+        assert_eq!(grid.owned().count(), 2);
+        assert!(grid.owned().all(|slot| grid.keys()[slot].at[0] == 0));
+        let ahead = grid.forward[grid.find(&key([0, 0])).expect("an owner") as usize][1];
+        assert_eq!(grid.keys()[ahead as usize], key([1, 0]), "tiles reach a ghost");
     }
 }

@@ -88,12 +88,12 @@ impl Index {
     }
 }
 
-/// Where a key would like to stand: its coordinates, mixed.
+/// Where a key would like to stand: its layer and coordinates, mixed.
 fn home<const D: usize>(key: &Key<D>) -> usize {
     let mix = |h: u64, k: &i32| {
         (h.rotate_left(23) ^ u64::from(*k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
     };
-    (key.iter().fold(0, mix) >> 32) as usize
+    (key.at.iter().fold(u64::from(key.layer), mix) >> 32) as usize
 }
 
 #[cfg(test)]
@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn keys_are_found_after_others_went() {
-        let keys: Vec<Key<2>> = (0..900).map(|n| [n % 30 - 15, n / 30 - 7]).collect();
+        let keys: Vec<Key<2>> =
+            (0..900).map(|n| Key { layer: 0, at: [n % 30 - 15, n / 30 - 7] }).collect();
         let mut index = Index::default();
         assert_eq!(index.find(&keys[0], &keys), None);
         for n in 0..900 {

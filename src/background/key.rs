@@ -5,17 +5,31 @@ use std::cmp::Ordering;
 /// Nodes along the edge of a block.
 pub const EDGE: usize = 4;
 
-/// Integer coordinates of a block: the block holds the nodes `4 * key .. 4 * key + 3` along each axis.
-pub type Key<const D: usize> = [i32; D];
+/// Which block: its layer and its integer coordinates. It holds the nodes `4 * at .. 4 * at + 3` along
+/// each axis.
+///
+/// Layers are velocity fields that stand at the same coordinates; blocks of one are no neighbours of
+/// those of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key<const D: usize> {
+    /// The layer; 0 for all bodies that share a velocity field.
+    pub layer: u32,
+    /// Coordinates, in blocks.
+    pub at: [i32; D],
+}
 
 /// Nodes of a block.
 pub const fn block_nodes(dimension: usize) -> usize {
     EDGE.pow(dimension as u32)
 }
 
-/// Order of keys along the Morton curve, found without interleaving bits: the axis whose coordinates differ in the
+/// Order of keys: by layer, then along the Morton curve, found without interleaving bits: the axis whose coordinates differ in the
 /// highest bit decides; the first axis wins ties. Flipping the sign bit makes negative coordinates ordinary.
 pub fn morton_order<const D: usize>(a: &Key<D>, b: &Key<D>) -> Ordering {
+    if a.layer != b.layer {
+        return a.layer.cmp(&b.layer);
+    }
+    let (a, b) = (&a.at, &b.at);
     let flip = |v: i32| (v as u32) ^ 0x8000_0000;
     let (mut axis, mut highest) = (0, 0u32);
     for d in 0..D {
@@ -37,23 +51,27 @@ pub fn split_node(node: i64) -> (i64, usize) {
 mod tests {
     use super::*;
 
+    const fn key<const D: usize>(at: [i32; D]) -> Key<D> {
+        Key { layer: 0, at }
+    }
+
     /// The Morton code of coordinates below 8, bit by bit, the first axis highest.
     fn interleaved(key: Key<3>) -> i32 {
-        let bits = |bit: i32| (0..3).fold(0, |code, d| 2 * code + (key[d] >> bit & 1));
+        let bits = |bit: i32| (0..3).fold(0, |code, d| 2 * code + (key.at[d] >> bit & 1));
         (0..3).fold(0, |code, place| 8 * code + bits(2 - place))
     }
 
     #[test]
     fn the_order_is_that_of_interleaved_bits() {
-        let mut keys: Vec<Key<3>> = (0..512).map(|i| [i % 8, i / 64, i / 8 % 8]).collect();
+        let mut keys: Vec<Key<3>> = (0..512).map(|i| key([i % 8, i / 64, i / 8 % 8])).collect();
         keys.sort_by(morton_order);
         assert!(keys.iter().enumerate().all(|(n, key)| interleaved(*key) == n as i32));
     }
 
     #[test]
     fn negative_keys_come_before_positive_ones() {
-        assert_eq!(morton_order(&[-1, 5], &[0, -5]), Ordering::Less);
-        assert_eq!(morton_order(&[3, -7], &[3, -7]), Ordering::Equal);
+        assert_eq!(morton_order(&key([-1, 5]), &key([0, -5])), Ordering::Less);
+        assert_eq!(morton_order(&key([3, -7]), &key([3, -7])), Ordering::Equal);
         assert_eq!(split_node(-1), (-1, 3));
         assert_eq!(split_node(7), (1, 3));
     }

@@ -4,7 +4,8 @@
 //! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
 
 use super::blocks::Neighbours;
-use super::{EDGE, Grid, Lanes, NONE, room};
+use super::nodes::{Record, joined};
+use super::{Blocks, EDGE, NONE, Nodes, room};
 use crate::error::Result;
 use crate::memory::{refill, reserve_exact};
 use crate::simd::Vector;
@@ -163,22 +164,23 @@ pub fn shared_rows<const D: usize>(
     })
 }
 
-/// Copies the nodes that the particles of `block` see into a tile: R0 in the first four lanes, `second` in the others.
+/// Copies the nodes that the particles of `block` see into a tile: the velocities in the first four lanes,
+/// `second` in the others.
 #[inline(always)]
 pub fn load_tile<V: Vector, const D: usize>(
-    grid: &Grid<D>,
-    second: &[Lanes],
+    (blocks, nodes): (&Blocks<D>, &Nodes),
+    second: &[Record],
     block: u32,
     edge: usize,
     tile: &mut [TileNode],
 ) {
     for corner in 0..1 << D {
-        let source = grid.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
+        let source = blocks.forward[block as usize][corner] as usize * EDGE.pow(D as u32);
         for (t, b, len) in shared_rows::<D>(edge, corner) {
-            let r0 = &grid.velocity[source + b..][..len];
+            let r0 = &nodes.velocity[source + b..][..len];
             let r1 = &second[source + b..][..len];
             for ((node, r0), r1) in tile[t..t + len].iter_mut().zip(r0).zip(r1) {
-                V::join(r0, r1).store_node(node);
+                joined::<V>(r0, r1).store_node(node);
             }
         }
     }

@@ -1,6 +1,10 @@
 //! Velocities prescribed on a region of the grid.
 
-use super::{BoxRegion, Table};
+use std::ops::Range;
+
+use super::wall::ROUND_OFF;
+use super::{BoxRegion, Condition, Table};
+use crate::background::{EDGE, Key, Space, block_nodes};
 use crate::error::{Error, Result};
 
 /// The component along x in [`PrescribedVelocity::components`].
@@ -39,5 +43,63 @@ impl PrescribedVelocity {
     /// Whether the velocity along an axis is prescribed.
     pub fn holds(&self, axis: usize) -> bool {
         self.components >> axis & 1 == 1
+    }
+
+    /// Calls `visit` with the places in block `key` of the nodes inside the box.
+    pub fn for_nodes_inside<const D: usize>(
+        &self,
+        space: &Space<D>,
+        key: &Key<D>,
+        mut visit: impl FnMut(usize),
+    ) {
+        let mut layers: [Range<usize>; D] = std::array::from_fn(|_| 0..0);
+        for d in 0..D {
+            layers[d] = self.layers_inside(space, key, d);
+            if layers[d].is_empty() {
+                return;
+            }
+        }
+        for node in 0..block_nodes(D) {
+            let layer = |d: usize| node / EDGE.pow((D - 1 - d) as u32) % EDGE;
+            if (0..D).all(|d| layers[d].contains(&layer(d))) {
+                visit(node);
+            }
+        }
+    }
+
+    /// Layers of nodes of block `key`, along axis d, that are inside the box.
+    fn layers_inside<const D: usize>(
+        &self,
+        space: &Space<D>,
+        key: &Key<D>,
+        d: usize,
+    ) -> Range<usize> {
+        let lowest = f64::from(key.at[d]) * EDGE as f64;
+        let units = |x: f64| (x - space.origin[d]) * space.inverse;
+        let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
+        let first = (units(self.region.min[d]) - ROUND_OFF).ceil() - lowest;
+        let last = (units(self.region.max[d]) + ROUND_OFF).floor() - lowest;
+        clamp(first)..clamp(last + 1.0)
+    }
+}
+
+/// A prescribed velocity in a world.
+#[derive(Clone, Debug)]
+pub struct Prescribed {
+    /// The condition.
+    pub condition: PrescribedVelocity,
+    /// Velocity of the nodes at the end of the step [m/s].
+    pub target: [f64; 3],
+}
+
+impl Condition for Prescribed {
+    const WHAT: &'static str = "prescribed velocity";
+
+    fn end(&self) -> f64 {
+        self.condition.velocity.end()
+    }
+
+    fn largest_speed(&self, from: f64, until: f64) -> f64 {
+        self.condition.velocity.largest(from, until)
     }
 }

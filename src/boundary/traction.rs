@@ -1,8 +1,8 @@
 //! Tractions on the surfaces of bodies, and which particles carry them.
 
-use super::{BoxRegion, Table};
+use super::{BoxRegion, Condition, Table};
 use crate::error::{Error, Place, Result};
-use crate::world::state::Body;
+use crate::particles::Body;
 
 /// A dead load on a plane surface of a body: force per area of the surface as it was when the body was added.
 #[derive(Clone, Debug)]
@@ -160,5 +160,28 @@ impl Surface {
                 self.places[n as usize] = place;
             }
         }
+    }
+}
+
+/// A traction in a world.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The load.
+    pub load: Traction,
+    /// The particles that carry it.
+    pub surface: Surface,
+    /// Force on the body that the grid holds now [N].
+    pub applied: [f64; 3],
+}
+
+impl Condition for Loaded {
+    const WHAT: &'static str = "traction";
+
+    fn end(&self) -> f64 {
+        self.load.traction.end()
+    }
+
+    fn belongs_to(&self, body: i64) -> bool {
+        self.load.body == body
     }
 }

@@ -5,7 +5,14 @@
 //! (linear) or a half-cell plane (quadratic) no free node's function then reaches the wall; elsewhere the wall acts up
 //! to one cell late. All nodes behind it are held too; several walls act in the order in which they were added.
 
+use std::ops::Range;
+
+use super::{Condition, law};
+use crate::background::{EDGE, Key, Space, block_nodes};
 use crate::error::{Error, Result};
+
+/// Nodes this close to the reach of a condition, in cells, still count as reached: the round-off of positions.
+pub const ROUND_OFF: f64 = 1e-9;
 
 /// What a wall does to a node's velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,52 +89,51 @@ impl Wall {
         Ok(())
     }
 
+    /// Unit vector from the wall to the material.
+    pub fn normal<const D: usize>(&self) -> [f64; D] {
+        std::array::from_fn(|a| if a == self.axis { f64::from(self.side) } else { 0.0 })
+    }
+
     /// Velocity that the wall leaves a node with velocity `v`.
     #[inline(always)]
     pub fn constrain<const D: usize>(&self, v: [f64; D]) -> [f64; D] {
-        let side = f64::from(self.side);
-        let mut out = v;
-        match self.kind {
-            WallKind::Sticky => return [0.0; D],
-            WallKind::Slip => out[self.axis] = 0.0, // [BND-1]
-            WallKind::Separating | WallKind::Friction => {
-                let approach = -side * v[self.axis];
-                if approach <= 0.0 {
-                    return v;
-                }
-                out[self.axis] = 0.0;
-                if self.kind == WallKind::Friction {
-                    let tangential = out.iter().map(|c| c * c).sum::<f64>().sqrt();
-                    let left = (tangential - self.friction * approach).max(0.0); // [BND-2]
-                    if tangential > 0.0 {
-                        out = out.map(|c| c * (left / tangential));
-                    }
-                }
+        law::constrain(self.kind, self.friction, self.normal(), v)
+    }
+
+    /// Calls `visit` with the places in block `key` of the nodes that the wall reaches.
+    pub fn reached<const D: usize>(
+        &self,
+        space: &Space<D>,
+        key: &Key<D>,
+        mut visit: impl FnMut(usize),
+    ) {
+        let reached = self.reached_layers(space, key);
+        if reached.is_empty() {
+            return;
+        }
+        let pitch = EDGE.pow((D - 1 - self.axis) as u32);
+        for slab in (0..block_nodes(D)).step_by(EDGE * pitch) {
+            for layer in reached.clone() {
+                let first = slab + layer * pitch;
+                (first..first + pitch).for_each(&mut visit);
             }
         }
-        out
+    }
+
+    /// Layers of nodes of block `key`, along the wall's axis, that the wall reaches.
+    fn reached_layers<const D: usize>(&self, space: &Space<D>, key: &Key<D>) -> Range<usize> {
+        let at = (self.position - space.origin[self.axis]) / space.spacing;
+        let reach = space.wall_reach + ROUND_OFF; // [BND-3]
+        let lowest = f64::from(key.at[self.axis]) * EDGE as f64;
+        let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
+        if self.side > 0 {
+            0..clamp((at + reach).floor() - lowest + 1.0)
+        } else {
+            clamp((at - reach).ceil() - lowest)..EDGE
+        }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn floor(kind: WallKind) -> Wall {
-        Wall { axis: 1, side: 1, position: 0.0, kind, friction: 0.5 }
-    }
-
-    #[test]
-    fn each_kind_leaves_the_velocity_it_should() {
-        let v = [3.0, -2.0];
-        assert_eq!(floor(WallKind::Sticky).constrain(v), [0.0, 0.0]);
-        assert_eq!(floor(WallKind::Slip).constrain(v), [3.0, 0.0]);
-        assert_eq!(floor(WallKind::Separating).constrain(v), [3.0, 0.0]);
-        assert_eq!(floor(WallKind::Friction).constrain(v), [2.0, 0.0]);
-        assert_eq!(floor(WallKind::Friction).constrain([0.5, -2.0]), [0.0, 0.0]);
-        for kind in [WallKind::Separating, WallKind::Friction] {
-            assert_eq!(floor(kind).constrain([3.0, 2.0]), [3.0, 2.0]);
-        }
-        assert_eq!(floor(WallKind::Slip).constrain([3.0, 2.0]), [3.0, 0.0]);
-    }
+impl Condition for Wall {
+    const WHAT: &'static str = "wall";
 }

@@ -58,6 +58,7 @@ pub(super) struct WorldCell {
     poisoned: AtomicBool,
     read_views: AtomicI64,
     write_views: AtomicI64,
+    written_through_views: AtomicBool,
     generation: AtomicI64,
 }
 
@@ -71,6 +72,7 @@ impl WorldCell {
             poisoned: AtomicBool::new(false),
             read_views: AtomicI64::new(0),
             write_views: AtomicI64::new(0),
+            written_through_views: AtomicBool::new(false),
             generation: AtomicI64::new(0),
         })
     }
@@ -96,9 +98,35 @@ impl WorldCell {
         f(&*self.read()?)
     }
 
-    /// As [`WorldCell::query`], for what depends on the storage order or on the grid: makes them current before.
+    /// As [`WorldCell::query`], for what depends on the storage order: makes it one that only a step changes
+    /// before.
     pub(super) fn query_order<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
-        let stale = |world: &World| !world.is_fresh() && !self.is_poisoned(world);
+        self.query_when(World::is_sorted, f)
+    }
+
+    /// As [`WorldCell::query`], for what depends on the grid: makes it current before. What is written through
+    /// views counts once all of them are closed.
+    pub(super) fn query_grid<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
+        let written = &self.written_through_views;
+        if self.write_views.load(Ordering::Acquire) == 0 && written.load(Ordering::Acquire) {
+            match self.write(Change::Values) {
+                Ok(mut world) => {
+                    written.store(false, Ordering::Release);
+                    world.views_closed();
+                }
+                Err(error) if error.status == Status::Poisoned => {}
+                Err(error) => return Err(error),
+            }
+        }
+        self.query_when(World::is_fresh, f)
+    }
+
+    fn query_when<R>(
+        &self,
+        is_good: impl Fn(&World) -> bool,
+        f: impl FnOnce(&World) -> Result<R>,
+    ) -> Result<R> {
+        let stale = |world: &World| !is_good(world) && !self.is_poisoned(world);
         let is_stale = stale(&*self.read()?);
         if is_stale {
             self.change(Change::Step, World::refresh)?;
@@ -204,6 +232,9 @@ impl OpenView {
 
 impl Drop for OpenView {
     fn drop(&mut self) {
+        if self.write {
+            self.cell.written_through_views.store(true, Ordering::Release);
+        }
         self.counter().fetch_sub(1, Ordering::AcqRel);
     }
 }

@@ -54,7 +54,7 @@ pub unsafe extern "C" fn lahar_grid_stats(
     entry("lahar_grid_stats", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
         let (cell, place) = unsafe { (scope.world(world)?, struct_out(statistics, "statistics")?) };
-        place.set(cell.query_order(|w| Ok(statistics_of(w)))?);
+        place.set(cell.query_grid(|w| Ok(statistics_of(w)))?);
         Ok(())
     })
 }
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn lahar_grid_blocks(
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
         let (cell, count) = unsafe { (scope.world(world)?, out(count, "count")?) };
         let d = cell.dimension;
-        let blocks = cell.query_order(|w| {
+        let blocks = cell.query_grid(|w| {
             Ok(w.grid_blocks()
                 .into_iter()
                 .flat_map(|b| b.into_iter().take(d))
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn lahar_grid_find_node(
         };
         let mut index = index;
         index[cell.dimension..].fill(0);
-        node.set(cell.query_order(|w| Ok(w.grid_find_node(index)))?.unwrap_or(-1));
+        node.set(cell.query_grid(|w| Ok(w.grid_find_node(index)))?.unwrap_or(-1));
         Ok(())
     })
 }
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn lahar_grid_node_index(
         // SAFETY: the host passes NULL or a live handle, and NULL or three writable integers.
         let (cell, place) =
             unsafe { (scope.world(world)?, out(index.cast::<[i64; 3]>(), "index")?) };
-        place.set(cell.query_order(|w| w.grid_node_index(node).ok_or_else(|| no_node(w, node)))?);
+        place.set(cell.query_grid(|w| w.grid_node_index(node).ok_or_else(|| no_node(w, node)))?);
         Ok(())
     })
 }
@@ -224,7 +224,7 @@ pub unsafe extern "C" fn lahar_grid_read(
         // SAFETY: the host passes NULL or a live handle, and NULL or a text.
         let (cell, field) = unsafe { (scope.world(world)?, text(field, "field")?) };
         // SAFETY: the host passes NULL or `count` nodes, and NULL or room for the values of so many.
-        cell.query_order(|w| unsafe { read_nodes(w, field, (count, nodes), values) })
+        cell.query_grid(|w| unsafe { read_nodes(w, field, (count, nodes), values) })
     })
 }
 
@@ -290,7 +290,7 @@ pub unsafe extern "C" fn lahar_grid_sample(
         // SAFETY: the host passes NULL or a live handle, and NULL or a text.
         let (cell, field) = unsafe { (scope.world(world)?, text(field, "field")?) };
         // SAFETY: the host passes NULL or `count` points, and NULL or room for the results of so many.
-        cell.query_order(|w| unsafe { sample(w, field, (count, points), (values, inside)) })
+        cell.query_grid(|w| unsafe { sample(w, field, (count, points), (values, inside)) })
     })
 }
 

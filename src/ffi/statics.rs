@@ -105,7 +105,7 @@ pub unsafe extern "C" fn lahar_world_equilibrium(
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
         let (cell, place) =
             unsafe { (scope.world(world)?, struct_out(equilibrium, "equilibrium")?) };
-        place.set(from_equilibrium(&cell.query_order(World::equilibrium)?));
+        place.set(from_equilibrium(&cell.query_grid(World::equilibrium_of_grid)?));
         Ok(())
     })
 }

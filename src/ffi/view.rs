@@ -101,7 +101,7 @@ fn open_read(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_view
 fn open_write(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_view> {
     cell.query_order(|_| Ok(()))?;
     cell.change(Change::Values, |w| {
-        let slice = w.field_data_mut(body, field)?;
+        let slice = w.field_view_mut(body, field)?;
         Ok(lahar_view {
             open: OpenView::new(cell, true),
             data: slice.data.as_mut_ptr(),

@@ -1,6 +1,7 @@
 //! Runs of particles that threads work on.
 
 use super::Layout;
+use crate::parallel::Divide;
 use crate::simd::prefetch;
 
 /// Particles in a chunk: its columns and its scratch fit the second-level cache.
@@ -153,7 +154,7 @@ impl<const D: usize> Motion<'_, D> {
         &self.others[c][self.first..]
     }
 
-    /// Asks the memory for the particles from k on: for what a gather writes, and for what the next stages read.
+    /// Prefetches the particles from k on: what a gather writes, and what the next stages read.
     #[inline(always)]
     pub fn prefetch(&self, k: usize) {
         for a in 0..D {
@@ -179,21 +180,14 @@ fn parts<'a, const D: usize>(
     std::array::from_fn(|_| columns.next().map_or(&mut [][..], |column| &mut column[first..end]))
 }
 
-/// Calls `work` on tasks of at most 1024 particles and folds the results from left to right, so that neither the tasks nor the order
-/// of the fold depend on the number of threads.
-pub fn for_each_task<R: Send>(
-    particles: ChunkMut<'_>,
-    parallel: bool,
-    work: &(impl Fn(ChunkMut<'_>) -> R + Sync),
-    fold: &(impl Fn(R, R) -> R + Sync),
-) -> R {
-    if particles.len <= TASK {
-        return work(particles);
+/// Tasks of at most 1024 particles: which particles belong to one does not depend on the number of threads.
+impl Divide for ChunkMut<'_> {
+    fn divide(self) -> (Self, Option<Self>) {
+        if self.len <= TASK {
+            return (self, None);
+        }
+        let mid = (self.len / 2).next_multiple_of(TASK);
+        let (left, right) = self.split(mid);
+        (left, Some(right))
     }
-    let mid = (particles.len / 2).next_multiple_of(TASK);
-    let (left, right) = particles.split(mid);
-    let run = |part| for_each_task(part, parallel, work, fold);
-    let (a, b) =
-        if parallel { rayon::join(|| run(left), || run(right)) } else { (run(left), run(right)) };
-    fold(a, b)
 }

@@ -3,27 +3,28 @@
 //! Component `c` of the columns and particle `k` stand at `data[c * stride + k]`; the same memory is what hosts see through
 //! views, what the stages work on in chunks, and what a sort permutes.
 
+mod body;
 pub mod chunk;
 pub mod dilations;
 pub mod fields;
 pub mod moves;
 pub mod seeding;
 
-pub use chunk::{CHUNK, ChunkMut, Motion, for_each_task};
+pub use body::{Body, Sizes};
+pub use chunk::{CHUNK, ChunkMut, Motion};
 pub use dilations::Dilations;
 pub use fields::{Extras, FieldInfo, Layout};
 pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 
-use rayon::prelude::*;
-
 use crate::error::Result;
 use crate::memory::{Aligned, reserve, stride_of};
+use crate::parallel::{Cut, Team};
 use crate::simd::{LANES, prefetch};
 
-/// Segments that the memory is asked for ahead of the one that moves.
+/// Prefetch distance of moves [segments].
 const AHEAD: usize = 8;
 
-/// Particles of a segment that the memory is asked for ahead; more follow by themselves.
+/// Particles of a segment that are prefetched; more follow by themselves.
 const FETCHED: u32 = 512;
 
 /// The particles of one body.
@@ -159,8 +160,8 @@ impl Particles {
         (std::array::from_fn(column), &mut self.moved)
     }
 
-    /// Carries out moves of particles. With `parallel` several columns move at a time.
-    pub fn rearrange(&mut self, moves: Part<'_>, parallel: bool) {
+    /// Carries out moves of particles; several threads move a column each.
+    pub fn rearrange(&mut self, moves: Part<'_>, team: &Team) {
         let (stride, single) = (self.stride, moves.from.len().max(1));
         if moves.from.is_empty() && moves.segments.is_empty() {
             return;
@@ -168,18 +169,14 @@ impl Particles {
         let scratch = self.scratch.as_mut_slice();
         let data = self.data.as_mut_slice();
         let columns = data.len() / stride;
-        let at_a_time = if parallel { columns.min(stride / single) } else { 1 };
+        let at_a_time = if team.is_together() { columns.min(stride / single) } else { 1 };
         let group = stride * columns.div_ceil(at_a_time);
-        let work = |(columns, scratch): (&mut [f64], &mut [f64])| {
+        let pieces = (Cut(&mut data[..], group), Cut(&mut scratch[..], single));
+        team.for_each_piece(pieces, 1, |_, (columns, scratch)| {
             for column in columns.chunks_exact_mut(stride) {
                 move_all(column, scratch, moves, |x| x, |x| x);
             }
-        };
-        if at_a_time > 1 {
-            data.par_chunks_mut(group).zip(scratch.par_chunks_mut(single)).for_each(work);
-        } else {
-            work((data, &mut scratch[..single]));
-        }
+        });
         let (pack, unpack) = (|id| f64::from_bits(id as u64), |x: f64| x.to_bits() as i64);
         move_all(&mut self.id, scratch, moves, pack, unpack);
     }

@@ -1,5 +1,6 @@
 //! The stencil of particles: nodes, weights and gradients as a tensor product of one-dimensional functions.
 
+use crate::background::Space;
 use crate::simd::Real;
 
 /// Where a particle, or eight, stands along one axis, in units of the spacing.
@@ -18,6 +19,22 @@ impl At<f64> {
     pub const fn point(xi: f64) -> Self {
         Self { xi, half: 0.0, walls: [f64::NEG_INFINITY, f64::INFINITY] }
     }
+}
+
+impl<R: Real> At<R> {
+    /// Along axis d, at ξ [h], with edges `size` [m].
+    #[inline(always)]
+    fn along<const D: usize>(space: &Space<D>, d: usize, xi: R, size: R) -> Self {
+        let [low, high] = space.walls[d];
+        let half = size * R::splat(0.5 * space.inverse);
+        Self { xi, half, walls: [R::splat(low), R::splat(high)] }
+    }
+}
+
+/// Where any shape function is wanted for a point; `size` are the edges of its domain [m].
+pub fn at_point<const D: usize>(space: &Space<D>, x: [f64; D], size: [f64; D]) -> [At<f64>; D] {
+    let xi = space.between_walls(x);
+    std::array::from_fn(|d| At::along(space, d, xi[d], size[d]))
 }
 
 /// Weights along one axis, of one particle or of eight. Node `first + n` has weight `w[n]` and slope `dw[n]` [1/h].
@@ -61,6 +78,17 @@ impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
         let mut axes = [S::axis(at[0]); D];
         for d in 1..D {
             axes[d] = S::axis(at[d]);
+        }
+        Self { axes }
+    }
+
+    /// The stencil of particles with edges `size` [m].
+    #[inline(always)]
+    pub fn of_particles<S: ShapeFunction<N>>(space: &Space<D>, x: [R; D], size: [R; D]) -> Self {
+        let xi = if S::MODIFIED { space.between_walls(x) } else { space.to_units(x) };
+        let mut axes = [S::axis(At::along(space, 0, xi[0], size[0])); D];
+        for d in 1..D {
+            axes[d] = S::axis(At::along(space, d, xi[d], size[d]));
         }
         Self { axes }
     }

@@ -149,7 +149,7 @@ pub fn corners<V: Vector, const N: usize, const D: usize>(
     let edge = V::splat((EDGE + N - 1) as f64);
     let mut at = V::splat(0.0);
     for d in 0..D {
-        let lowest = V::splat(f64::from(key[d]) * EDGE as f64);
+        let lowest = V::splat(f64::from(key.at[d]) * EDGE as f64);
         at = at.mul_add(edge, stencil.axes[d].first - lowest);
     }
     at.to_indices()

@@ -88,6 +88,8 @@ pub trait Vector: Real {
     fn store_node(self, node: &mut TileNode);
     /// `low` in the first four lanes, `high` in the last four.
     fn join(low: &[f64; 4], high: &[f64; 4]) -> Self;
+    /// Writes the first four lanes to `low`, the last four to `high`.
+    fn part(self, low: &mut [f64; 4], high: &mut [f64; 4]);
     /// `low` in the first four lanes, `high` in the last four.
     fn halves(low: f64, high: f64) -> Self;
     /// Lane l of row r becomes lane r of row l.

@@ -140,6 +140,11 @@ impl Vector for Portable {
         Self(from_fn(|l| if l < 4 { low[l] } else { high[l - 4] }))
     }
     #[inline(always)]
+    fn part(self, low: &mut [f64; 4], high: &mut [f64; 4]) {
+        low.copy_from_slice(&self.0[..4]);
+        high.copy_from_slice(&self.0[4..]);
+    }
+    #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {
         Self([low, low, low, low, high, high, high, high])
     }

@@ -227,6 +227,13 @@ impl Vector for Avx2 {
         with!(Self(_mm256_loadu_pd(low.as_ptr()), _mm256_loadu_pd(high.as_ptr())))
     }
     #[inline(always)]
+    fn part(self, low: &mut [f64; 4], high: &mut [f64; 4]) {
+        with!({
+            _mm256_storeu_pd(low.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(high.as_mut_ptr(), self.1);
+        });
+    }
+    #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {
         with!(Self(_mm256_set1_pd(low), _mm256_set1_pd(high)))
     }
@@ -346,6 +353,13 @@ impl Vector for Avx512 {
             let low = _mm512_castpd256_pd512(_mm256_loadu_pd(low.as_ptr()));
             Self(_mm512_insertf64x4::<1>(low, _mm256_loadu_pd(high.as_ptr())))
         })
+    }
+    #[inline(always)]
+    fn part(self, low: &mut [f64; 4], high: &mut [f64; 4]) {
+        with!({
+            _mm256_storeu_pd(low.as_mut_ptr(), _mm512_castpd512_pd256(self.0));
+            _mm256_storeu_pd(high.as_mut_ptr(), _mm512_extractf64x4_pd::<1>(self.0));
+        });
     }
     #[inline(always)]
     fn halves(low: f64, high: f64) -> Self {

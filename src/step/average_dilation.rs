@@ -1,4 +1,4 @@
-//! Stage 5b, F-bar: the rate at which particles of a body grow is averaged over patches of the grid, so that nearly incompressible and plastic
+//! Stage 4c, F-bar: the rate at which particles of a body grow is averaged over patches of the grid, so that nearly incompressible and plastic
 //! material does not lock. Bodies without F-bar pass.
 //!
 //! A patch is a cell between nodes, whatever the shape function. Patches between the half-cell planes of quadratic splines would be the cells of
@@ -7,14 +7,12 @@
 //! E. A. de Souza Neto, D. Perić, M. Dutko, D. R. J. Owen, Int. J. Solids Struct. 33 (1996) 3277–3296, doi:10.1016/0020-7683(95)00259-6; for
 //! particles: W. M. Coombs, T. J. Charlton, M. Cortis, C. E. Augarde, Comput. Methods Appl. Mech. Engrg. 333 (2018) 1–21, doi:10.1016/j.cma.2018.01.010.
 
-use rayon::prelude::*;
-
-use crate::background::{EDGE, Grid, Key, Run};
-use crate::particles::Dilations;
-use crate::world::state::{Body, Piece, Space, State};
-
-use super::grid_to_particles::{Gather, grid_to_particles};
-use super::update_stress::Outcome;
+use super::grid_to_particles::Gather;
+use super::parts::Method;
+use super::pass::{Pass, Piece, Then};
+use crate::background::{Background, Blocks, EDGE, Key, Run, Space};
+use crate::parallel::{Cut, Divide, Team};
+use crate::particles::{Body, Dilations};
 
 /// Patches that the particles of a block reach along each axis: their lowest nodes are in the block, or behind it by one.
 const REACH: usize = EDGE + 1;
@@ -32,35 +30,36 @@ pub struct Patches {
 const NONE: u32 = u32::MAX;
 
 /// Leaves with every particle of the bodies with F-bar the mean rate of its patch, of the gradient that `gather` takes.
-pub fn average_dilation<const D: usize>(world: &mut State<D>, gather: Gather) {
-    if !world.bodies.iter().any(Body::has_f_bar) {
+pub fn average_dilation<const D: usize>(
+    bodies: &mut [Body],
+    background: &Background<D>,
+    method: &Method<D>,
+    patches: &mut Patches,
+    team: &Team,
+    gather: Gather,
+) {
+    if !bodies.iter().any(Body::has_f_bar) {
         return;
     }
-    world.for_each_chunk(|piece| {
-        if piece.chunk.layout.has_dilation() {
-            grid_to_particles(piece, gather, 0.0);
-            keep_rates(piece);
-        }
-        Outcome::default()
-    });
-    let (space, parallel) = (world.space(), world.parallel);
-    let State { bodies, grid, patches, .. } = world;
+    let pass = Pass { gather, dt: 0.0, then: Then::Rates };
+    (method.kernels.pass)(bodies, background, method, team, &pass);
+    let Background { space, blocks, .. } = background;
     for body in bodies.iter_mut().filter(|body| body.has_f_bar()) {
         let Body { particles, runs, .. } = body;
         let mut particles = particles.dilations::<D>();
-        patches.collect(&space, grid.keys(), &mut particles, runs, parallel);
-        let whole = Whole { space: &space, grid, patches, parallel };
-        whole.share(particles, runs, 0);
+        patches.collect(space, blocks.keys(), &mut particles, runs, team);
+        let whole = Whole { space, blocks, patches };
+        team.for_each(Sharing { particles, runs, first: 0 }, |part| whole.share(part));
     }
 }
 
 /// Turns the velocity gradients of a chunk into those of F-bar.
-pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_, D>) {
-    let Piece { chunk, scratch, axisymmetric, .. } = piece;
+pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_>, axisymmetric: bool) {
+    let Piece { chunk, scratch, .. } = piece;
     if !chunk.layout.has_dilation() {
         return;
     }
-    let axes = if *axisymmetric { 3 } else { D };
+    let axes = if axisymmetric { 3 } else { D };
     let (stride, l) = (scratch.stride, &mut *scratch.velocity_gradient);
     for (k, mean) in chunk.column(chunk.layout.dilation).iter().enumerate() {
         let trace = l[k] + l[4 * stride + k] + l[8 * stride + k];
@@ -70,8 +69,8 @@ pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_, D>) {
     }
 }
 
-/// Keeps the trace of the velocity gradient of every particle of a chunk.
-fn keep_rates<const D: usize>(piece: &mut Piece<'_, '_, D>) {
+/// Stores the trace of the velocity gradient of every particle of a chunk.
+pub fn store_rates(piece: &mut Piece<'_, '_>) {
     let Piece { chunk, scratch, .. } = piece;
     let (stride, l) = (scratch.stride, &*scratch.velocity_gradient);
     for (k, rate) in chunk.column_mut(chunk.layout.dilation).iter_mut().enumerate() {
@@ -83,7 +82,7 @@ fn keep_rates<const D: usize>(piece: &mut Piece<'_, '_, D>) {
 fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize {
     let xi = space.between_walls(x);
     (0..D).fold(0, |patch, d| {
-        let place = xi[d].floor() - f64::from(key[d]) * EDGE as f64;
+        let place = xi[d].floor() - f64::from(key.at[d]) * EDGE as f64;
         patch * REACH + place.clamp(0.0, EDGE as f64) as usize
     })
 }
@@ -96,7 +95,7 @@ impl Patches {
         keys: &[Key<D>],
         particles: &mut Dilations<'_, D>,
         runs: &[Run],
-        parallel: bool,
+        team: &Team,
     ) {
         let reached = REACH.pow(D as u32);
         self.sums.clear();
@@ -107,51 +106,60 @@ impl Patches {
             self.runs[run.block as usize] = n as u32;
         }
         let particles = &*particles;
-        let sum_up = |(run, sums): (&Run, &mut [[f64; 2]])| {
+        let pieces = (Cut(runs, 1), Cut(&mut self.sums[..], reached));
+        team.for_each_piece(pieces, FEW, |_, (run, sums)| {
+            let run = run[0];
             let key = keys[run.block as usize];
             for k in run.first as usize..run.end as usize {
                 let sum = &mut sums[patch_of(space, key, particles.position(k))];
                 sum[0] += particles.volume[k] * particles.rate(k);
                 sum[1] += particles.volume[k];
             }
-        };
-        if parallel {
-            runs.par_iter().zip(self.sums.par_chunks_mut(reached)).for_each(sum_up);
-        } else {
-            runs.iter().zip(self.sums.chunks_mut(reached)).for_each(sum_up);
+        });
+    }
+}
+
+/// Runs that one thread takes at least.
+const FEW: usize = 8;
+
+/// Particles whose rates become means: those of some runs, the first of them run `first` of the body.
+struct Sharing<'a, const D: usize> {
+    particles: Dilations<'a, D>,
+    runs: &'a [Run],
+    first: usize,
+}
+
+impl<const D: usize> Divide for Sharing<'_, D> {
+    fn divide(self) -> (Self, Option<Self>) {
+        let Self { particles, runs, first } = self;
+        if runs.len() <= FEW {
+            return (Self { particles, runs, first }, None);
         }
+        let half = runs.len() / 2;
+        let (left, right) = runs.split_at(half);
+        let (of_left, of_right) = particles.split(right[0].first as usize);
+        let part = |particles, runs, first| Self { particles, runs, first };
+        (part(of_left, left, first), Some(part(of_right, right, first + half)))
     }
 }
 
 /// What the runs of a body share.
 struct Whole<'a, const D: usize> {
     space: &'a Space<D>,
-    grid: &'a Grid<D>,
+    blocks: &'a Blocks<D>,
     patches: &'a Patches,
-    parallel: bool,
 }
 
 impl<const D: usize> Whole<'_, D> {
-    /// Replaces the rates of the particles of some runs, the first of them run `from` of the body, by the means of their patches.
-    fn share(&self, mut particles: Dilations<'_, D>, runs: &[Run], from: usize) {
-        const FEW: usize = 8;
-        if !self.parallel || runs.len() <= FEW {
-            for (n, run) in runs.iter().enumerate() {
-                self.share_run(&mut particles, run, from + n);
-            }
-            return;
+    /// Replaces the rates of particles by the means of their patches.
+    fn share(&self, Sharing { mut particles, runs, first }: Sharing<'_, D>) {
+        for (n, run) in runs.iter().enumerate() {
+            self.share_run(&mut particles, run, first + n);
         }
-        let half = runs.len() / 2;
-        let (left, right) = runs.split_at(half);
-        let (of_left, of_right) = particles.split(right[0].first as usize);
-        rayon::join(
-            || self.share(of_left, left, from),
-            || self.share(of_right, right, from + half),
-        );
     }
 
     fn share_run(&self, particles: &mut Dilations<'_, D>, run: &Run, n: usize) {
-        let key = self.grid.keys()[run.block as usize];
+        let key = self.blocks.keys()[run.block as usize];
         let mut means = [0.0; REACH * REACH * REACH];
         let reached = REACH.pow(D as u32);
         for patch in 0..reached {
@@ -187,10 +195,10 @@ impl<const D: usize> Whole<'_, D> {
                         break;
                     }
                 };
-                other[d] += step;
+                other.at[d] += step;
                 theirs = theirs * REACH + at;
             }
-            let found = if exists { self.grid.find_near(slot, &other) } else { None };
+            let found = if exists { self.blocks.find_near(slot, &other) } else { None };
             let run = found.map_or(NONE, |slot| self.patches.runs[slot as usize]);
             if run != NONE {
                 let sum = self.patches.sums[run as usize * REACH.pow(D as u32) + theirs];

@@ -5,126 +5,153 @@
 //! USF and MUSL take gradients of velocities that came from particles, S⁺ S u: they are filtered too, or gradients would be those of a field
 //! that is smoothed once more than the one that moves the particles.
 
-use rayon::prelude::*;
-
-use crate::background::Lanes;
-use crate::transfer::{TransferKind, filter};
-use crate::world::state::State;
-
 use super::apply_boundaries::hold_at_boundaries;
-use super::grid_to_particles::{Gather, grid_to_particles};
+use super::grid_to_particles::Gather;
 use super::particles_to_grid::{Scattered, velocities_to_grid};
-use super::update_stress::Outcome;
+use super::parts::Method;
+use super::pass::{Pass, Then};
+use crate::background::{Background, Nodes, Record};
+use crate::boundary::Conditions;
+use crate::parallel::{Cut, Team};
+use crate::particles::Body;
+use crate::transfer::{TransferKind, filter};
 
 /// Nodes that one thread takes at a time.
 const NODES: usize = 1024;
 
-/// Leaves in R1 the velocities that particles take; with FMPM they are the velocities of the grid too.
-pub fn filter_velocities<const D: usize>(world: &mut State<D>) {
-    let xpic = world.options.transfer == TransferKind::Xpic;
-    filtered(world, |world, nodes| {
-        for_nodes(world, nodes, |node, v, r1| {
-            node.start = *v;
-            for a in 1..=D {
-                node.start[a] -= if xpic { r1[a] } else { 0.0 };
-            }
-        });
-        sum_terms(world, nodes);
-        for_nodes(world, nodes, |node, v, r1| {
-            r1[0] = v[0];
-            for a in 1..=D {
-                r1[a] = node.u[a] + (v[a] - node.start[a]);
-            }
-        });
-        hold_at_boundaries(world);
-        if !xpic {
-            for_nodes(world, nodes, |_, v, r1| v[1..=D].copy_from_slice(&r1[1..=D]));
+/// Leaves in the increments the velocities that particles take; with FMPM they are the velocities of the grid too.
+pub fn filter_velocities<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    method: &Method<D>,
+    conditions: &Conditions,
+    filtering: &mut Filtering,
+    team: &Team,
+) {
+    let xpic = method.options.transfer == TransferKind::Xpic;
+    if !filtering.begins(method, &background.nodes) {
+        return;
+    }
+    filtering.for_nodes(&mut background.nodes, team, |terms, v, increment| {
+        terms.start = *v;
+        for a in (0..D).filter(|_| xpic) {
+            *terms.start.component_mut(a) -= increment.component(a);
         }
     });
-}
-
-/// Filters the velocities at the start of a step (R0), of which USF takes gradients.
-pub fn filter_start<const D: usize>(world: &mut State<D>) {
-    filtered(world, |world, nodes| {
-        for_nodes(world, nodes, |node, v, _| node.start = *v);
-        sum_terms(world, nodes);
-        for_nodes(world, nodes, |node, v, _| v[1..=D].copy_from_slice(&node.u[1..=D]));
+    sum_terms(bodies, background, method, conditions, filtering, team);
+    filtering.for_nodes(&mut background.nodes, team, |terms, v, increment| {
+        for a in 0..D {
+            let change = v.component(a) - terms.start.component(a);
+            *increment.component_mut(a) = terms.sum.component(a) + change;
+        }
     });
-}
-
-/// Filters the second velocities (R1), of which MUSL takes gradients.
-pub fn filter_again<const D: usize>(world: &mut State<D>) {
-    filtered(world, |world, nodes| {
-        for_nodes(world, nodes, |node, _, r1| node.start = *r1);
-        sum_terms(world, nodes);
-    });
-}
-
-/// Calls `work` with room for the nodes if the transfer is filtered.
-fn filtered<const D: usize>(
-    world: &mut State<D>,
-    work: impl FnOnce(&mut State<D>, &mut [Filtered]),
-) {
-    if world.options.transfer.is_filtered() {
-        let mut nodes = std::mem::take(&mut world.filtered);
-        nodes.clear();
-        nodes.resize(world.grid.velocity.len(), Filtered { start: [0.0; 4], u: [0.0; 4] });
-        work(world, &mut nodes);
-        world.filtered = nodes;
+    hold_at_boundaries(background, conditions, team);
+    if !xpic {
+        filtering.for_nodes(&mut background.nodes, team, |_, v, increment| {
+            v.set_vector::<D>(increment.vector());
+        });
     }
 }
 
-/// Leaves the sum of the terms that begin with `start` in `u` and R1.
-fn sum_terms<const D: usize>(world: &mut State<D>, nodes: &mut [Filtered]) {
-    for_nodes(world, nodes, |node, _, r1| *r1 = node.start);
-    hold(world, nodes);
-    for _ in 1..world.options.filter_order {
-        world.for_each_chunk(|piece| {
-            grid_to_particles(piece, Gather::Filter, 0.0);
-            Outcome::default()
+/// Filters the velocities at the start of a step, of which USF takes gradients.
+pub fn filter_start<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    method: &Method<D>,
+    conditions: &Conditions,
+    filtering: &mut Filtering,
+    team: &Team,
+) {
+    if filtering.begins(method, &background.nodes) {
+        filtering.for_nodes(&mut background.nodes, team, |terms, v, _| terms.start = *v);
+        sum_terms(bodies, background, method, conditions, filtering, team);
+        filtering.for_nodes(&mut background.nodes, team, |terms, v, _| {
+            v.set_vector::<D>(terms.sum.vector());
         });
-        velocities_to_grid(world, Scattered::Filtered);
-        for_nodes(world, nodes, |node, v, r1| {
-            let inverse = if v[0] > 0.0 { 1.0 / v[0] } else { 0.0 };
-            for a in 1..=D {
-                r1[a] = filter::add_term(node.u[a], node.start[a], inverse * r1[a]);
+    }
+}
+
+/// Filters the second velocities, of which MUSL takes gradients.
+pub fn filter_again<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    method: &Method<D>,
+    conditions: &Conditions,
+    filtering: &mut Filtering,
+    team: &Team,
+) {
+    if filtering.begins(method, &background.nodes) {
+        filtering.for_nodes(&mut background.nodes, team, |terms, _, second| terms.start = *second);
+        sum_terms(bodies, background, method, conditions, filtering, team);
+    }
+}
+
+/// Leaves the sum of the terms that begin with `start` in `sum` and in the increments.
+fn sum_terms<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    method: &Method<D>,
+    conditions: &Conditions,
+    filtering: &mut Filtering,
+    team: &Team,
+) {
+    filtering.for_nodes(&mut background.nodes, team, |terms, _, u| *u = terms.start);
+    hold_at_boundaries(background, conditions, team);
+    filtering.for_nodes(&mut background.nodes, team, |terms, _, u| terms.sum = *u);
+    let pass = Pass { gather: Gather::Filter, dt: 0.0, then: Then::Nothing };
+    for _ in 1..method.options.filter_order {
+        (method.kernels.pass)(bodies, background, method, team, &pass);
+        velocities_to_grid(background, bodies, method, team, Scattered::Filtered);
+        filtering.for_nodes(&mut background.nodes, team, |terms, v, back| {
+            let inverse = if v.mass() > 0.0 { 1.0 / v.mass() } else { 0.0 };
+            for a in 0..D {
+                let (sum, start) = (terms.sum.component(a), terms.start.component(a));
+                *back.component_mut(a) = filter::add_term(sum, start, inverse * back.component(a));
             }
         });
-        hold(world, nodes);
+        hold_at_boundaries(background, conditions, team);
+        filtering.for_nodes(&mut background.nodes, team, |terms, _, u| terms.sum = *u);
     }
 }
 
-/// Applies the boundaries to the sum of the terms, which stands in R1.
-fn hold<const D: usize>(world: &mut State<D>, filtered: &mut [Filtered]) {
-    hold_at_boundaries(world);
-    for_nodes(world, filtered, |node, _, r1| node.u = *r1);
-}
+/// Velocities of the nodes on their way through a filter; used by filtered transfers alone.
+#[derive(Default)]
+pub struct Filtering(Vec<Terms>);
 
-/// Velocities of a node on their way through a filter, in lanes 1 to D.
+/// Velocities of a node on their way through a filter.
 #[derive(Clone, Copy)]
-pub struct Filtered {
+struct Terms {
     /// What goes in.
-    start: Lanes,
+    start: Record,
     /// The sum of the terms so far.
-    u: Lanes,
+    sum: Record,
 }
 
-/// Calls `work` with the filtered velocities, R0 and R1 of every node.
-fn for_nodes<const D: usize>(
-    world: &mut State<D>,
-    filtered: &mut [Filtered],
-    work: impl Fn(&mut Filtered, &mut Lanes, &mut Lanes) + Sync,
-) {
-    let grid = &mut world.grid;
-    let all = |((nodes, r0), r1): ((&mut [Filtered], &mut [Lanes]), &mut [Lanes])| {
-        for ((node, r0), r1) in nodes.iter_mut().zip(r0).zip(r1) {
-            work(node, r0, r1);
+impl Filtering {
+    /// Makes room for the nodes if the transfer is filtered; whether it is.
+    fn begins<const D: usize>(&mut self, method: &Method<D>, nodes: &Nodes) -> bool {
+        let filtered = method.options.transfer.is_filtered();
+        if filtered {
+            self.0.clear();
+            self.0.resize(nodes.len(), Terms { start: Record::ZERO, sum: Record::ZERO });
         }
-    };
-    if world.parallel {
-        let records = filtered.par_chunks_mut(NODES).zip(grid.velocity.par_chunks_mut(NODES));
-        records.zip(grid.increment.par_chunks_mut(NODES)).for_each(all);
-    } else {
-        all(((filtered, &mut grid.velocity), &mut grid.increment));
+        filtered
+    }
+
+    /// Calls `work` with the terms, the velocity and the increment of every node.
+    fn for_nodes(
+        &mut self,
+        nodes: &mut Nodes,
+        team: &Team,
+        work: impl Fn(&mut Terms, &mut Record, &mut Record) + Sync,
+    ) {
+        let Nodes { velocity, increment, .. } = nodes;
+        let (terms, velocity) = (Cut(&mut self.0[..], NODES), Cut(&mut velocity[..], NODES));
+        let records = (terms, velocity, Cut(&mut increment[..], NODES));
+        team.for_each_piece(records, 1, |_, (terms, velocity, increment)| {
+            for ((terms, velocity), increment) in terms.iter_mut().zip(velocity).zip(increment) {
+                work(terms, velocity, increment);
+            }
+        });
     }
 }

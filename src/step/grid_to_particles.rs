@@ -2,21 +2,23 @@
 //!
 //! The mirror image of the scatter: a node has eight lanes, two of its records, and with the weights w_n and the pairs c_n of an axis (see
 //! [`weights`](crate::shape::weights)) one pass over rows, planes and stencil gives Σ w R of both and, along each axis,
-//! Σ r w or Σ ∂w of each. Which record stands where is told by [`GatherJob::second`] and [`GatherJob::gradient_lane`].
+//! Σ r w or Σ ∂w of each. [`GatherJob::second`] and
+//! [`GatherJob::gradient_lane`] say which record stands where.
 //! Cost per particle, quadratic in 3D: 62 products and 36 sums of eight lanes, 27 nodes read, 3 doubles read and 24 written.
 
 use std::marker::PhantomData;
 
-use crate::background::key::EDGE;
+use super::parts::Method;
+use super::pass::{Copied, Pass, Piece};
+use crate::background::nodes::{FIRST, SECOND};
 use crate::background::tiles::{TileNode, load_tile};
-use crate::background::{Grid, Key, Lanes, Run};
+use crate::background::{Background, Blocks, EDGE, Key, Record, Run};
 use crate::particles::{CHUNK, ChunkMut, Motion};
 use crate::shape::modified::is_modified;
 use crate::shape::stencil::{At, ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
-use crate::simd::{Isa, Kernel, LANES, Vector, each};
+use crate::simd::{Kernel, LANES, Vector, each};
 use crate::transfer::{Received, TransferKind, apic, pic_flip};
-use crate::world::state::{ChunkStage, Piece, Space};
 
 /// What a gather updates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,60 +62,52 @@ impl Gather {
 }
 
 /// Everything a gather needs beside the chunk.
-#[derive(Clone, Copy, Debug)]
-pub struct GatherJob<'a, const D: usize> {
-    /// The instruction set.
-    pub isa: Isa,
-    /// The grid.
-    pub grid: &'a Grid<D>,
-    /// Origin and spacing.
-    pub space: Space<D>,
+struct GatherJob<'a, const D: usize> {
+    background: &'a Background<D>,
     /// The runs that the chunk touches.
-    pub runs: &'a [Run],
-    /// What to update.
-    pub what: Gather,
-    /// The transfer scheme.
-    pub transfer: TransferKind,
+    runs: &'a [Run],
+    what: Gather,
+    transfer: TransferKind,
     /// Share of PIC in this step [–].
-    pub pic_share: f64,
+    pic_share: f64,
     /// The step [s].
-    pub dt: f64,
+    dt: f64,
     /// Distance between components of the gradient.
-    pub stride: usize,
+    stride: usize,
     /// Where the sizes of the particles start among the columns behind the velocity.
-    pub size: usize,
+    size: usize,
     /// Whether x is a radius, and the gradient has a hoop component v_r / r.
-    pub axisymmetric: bool,
+    axisymmetric: bool,
 }
 
 impl<'a, const D: usize> GatherJob<'a, D> {
     /// The record in the last four lanes of a node: affine transfers take moment and gradient of R0 at once, the others need R1
     /// (FLIP its increment, MUSL its second velocity).
-    fn second(&self) -> &'a [Lanes] {
+    fn second(&self) -> &'a [Record] {
         if self.transfer.is_affine() && !self.what.second() {
-            &self.grid.velocity
+            &self.background.nodes.velocity
         } else {
-            &self.grid.increment
+            &self.background.nodes.increment
         }
     }
 
     /// The first lane of the slopes that hold the velocity gradient.
     #[inline(always)]
     fn gradient_lane(&self) -> usize {
-        if self.transfer.is_affine() || self.what.second() { 5 } else { 1 }
+        if self.transfer.is_affine() || self.what.second() { SECOND } else { FIRST }
     }
 }
 
-/// The copy of the grid around a block from which its particles gather, and the slot of the block, if there is one already.
-pub type Loaded<'a> = (&'a mut [TileNode], &'a mut Option<u32>);
-
-/// The gather of a chunk: job, tile, chunk, velocity gradients (9 components).
-pub type GatherKernel<const D: usize> =
-    fn(&GatherJob<'_, D>, Loaded<'_>, &mut ChunkMut<'_>, &mut [f64]);
-
-/// Updates the particles of a chunk from the grid and leaves their velocity gradients in the chunk's scratch.
-pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gather, dt: f64) {
-    let Piece { chunk, scratch, tile, loaded, runs, .. } = piece;
+/// Updates the particles of a chunk from the grid and leaves their velocity gradients in the chunk's scratch;
+/// `runs` are those of the body.
+pub fn gather<S: ShapeFunction<N>, const N: usize, const D: usize>(
+    piece: &mut Piece<'_, '_>,
+    (background, runs): (&Background<D>, &[Run]),
+    copied: &mut Copied<'_>,
+    method: &Method<D>,
+    pass: &Pass,
+) {
+    let Piece { chunk, scratch, .. } = piece;
     if D == 2 {
         for c in [2, 5, 6, 7, 8] {
             scratch.velocity_gradient[c * scratch.stride..][..scratch.stride].fill(0.0);
@@ -121,53 +115,45 @@ pub fn grid_to_particles<const D: usize>(piece: &mut Piece<'_, '_, D>, what: Gat
     }
     let start = runs.partition_point(|run| run.end as usize <= chunk.first);
     let job = GatherJob {
-        isa: piece.isa,
-        grid: piece.grid,
-        space: piece.space,
+        background,
         runs: &runs[start..],
-        what,
-        transfer: piece.transfer,
-        pic_share: pic_flip::pic_share(piece.pic_rate, dt),
-        dt,
+        what: pass.gather,
+        transfer: method.options.transfer,
+        pic_share: pic_flip::pic_share(method.options.pic_rate, pass.dt),
+        dt: pass.dt,
         stride: scratch.stride,
         size: chunk.layout.size - chunk.layout.mass,
-        axisymmetric: piece.axisymmetric,
+        axisymmetric: method.options.axisymmetric,
     };
-    (piece.gather)(&job, (tile, loaded), chunk, scratch.velocity_gradient);
-    piece.lap(ChunkStage::Gathered);
+    let gradient = &mut *scratch.velocity_gradient;
+    method.isa.dispatch(GatherChunk::<S, N, D>(&job, copied, chunk, gradient, PhantomData));
 }
 
-/// Kernel of the gather.
-pub fn gather_chunk<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    job: &GatherJob<'_, D>,
-    loaded: Loaded<'_>,
-    chunk: &mut ChunkMut<'_>,
-    gradient: &mut [f64],
-) {
-    job.isa.dispatch(GatherChunk::<S, N, D>(job, loaded, chunk, gradient, PhantomData));
-}
-
-struct GatherChunk<'a, 'c, S, const N: usize, const D: usize>(
+struct GatherChunk<'a, 'b, 'c, S, const N: usize, const D: usize>(
     &'a GatherJob<'a, D>,
-    Loaded<'a>,
+    &'a mut Copied<'b>,
     &'a mut ChunkMut<'c>,
     &'a mut [f64],
     PhantomData<S>,
 );
 
-impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for GatherChunk<'_, '_, S, N, D> {
+impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel
+    for GatherChunk<'_, '_, '_, S, N, D>
+{
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(job, (tile, loaded), chunk, gradient, _) = self;
+        let Self(job, Copied { tile, block }, chunk, gradient, _) = self;
+        let Background { blocks, nodes, .. } = job.background;
         let mut batch = Batch::<N, D>::new();
         let mut taken = Taken::new();
         let (first, end) = (chunk.first, chunk.first + chunk.len);
         for run in job.runs.iter().take_while(|run| (run.first as usize) < end) {
-            if loaded.replace(run.block) != Some(run.block) {
-                load_tile::<V, D>(job.grid, job.second(), run.block, EDGE + N - 1, tile);
+            if block.replace(run.block) != Some(run.block) {
+                let second = job.second();
+                load_tile::<V, D>((blocks, nodes), second, run.block, EDGE + N - 1, tile);
             }
-            let key = job.grid.keys()[run.block as usize];
+            let key = blocks.keys()[run.block as usize];
             let range = (first.max(run.first as usize) - first, end.min(run.end as usize) - first);
             let mut marks = [0; CHUNK / LANES];
             let mut motion = chunk.motion::<D>(range);
@@ -214,7 +200,7 @@ impl<'a, const D: usize> Gradient<'a, D> {
     }
 }
 
-/// How many particles before its use a line of a column is asked for, here and in the stages that follow.
+/// Prefetch distance of the columns, here and in the stages that follow [particles].
 const AHEAD: usize = 64;
 
 /// Stencils of a batch.
@@ -246,7 +232,7 @@ impl<const N: usize, const D: usize> Batch<N, D> {
             if S::SIZED {
                 size = each!(d in D => V::load(&motion.other(job.size + d)[k..end]));
             }
-            let stencil = job.space.stencil::<V, S, N>(x, size);
+            let stencil = Stencil::<V, N, D>::of_particles::<S>(&job.background.space, x, size);
             self.weights[g].set(&stencil, job.transfer.is_affine());
             self.corners[g] = corners(&stencil, key);
         }
@@ -288,14 +274,15 @@ impl<V: Vector, const D: usize> Taken<V, D> {
         for d in 1..D {
             slopes[d] = V::transpose(self.slopes[g][d]);
         }
-        let (h, inverse) = (V::splat(job.space.spacing), V::splat(job.space.inverse));
-        let second = job.gradient_lane() == 5;
+        let space = &job.background.space;
+        let (h, inverse) = (V::splat(space.spacing), V::splat(space.inverse));
+        let second = job.gradient_lane() == SECOND;
         Received {
-            velocity: each!(a in D => sums[1 + a]),
-            increment: each!(a in D => sums[5 + a]),
-            moment: each!(a in D, b in D => slopes[b][1 + a] * h),
+            velocity: each!(a in D => sums[FIRST + a]),
+            increment: each!(a in D => sums[SECOND + a]),
+            moment: each!(a in D, b in D => slopes[b][FIRST + a] * h),
             gradient: each!(a in D, b in D => {
-                let (low, high) = (slopes[b][1 + a], slopes[b][5 + a]);
+                let (low, high) = (slopes[b][FIRST + a], slopes[b][SECOND + a]);
                 (if second { high } else { low }) * inverse // [G2P-1]
             }),
         }
@@ -323,7 +310,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
         }
         if job.axisymmetric {
             let inverse = V::splat(1.0) / old[0];
-            if job.gradient_lane() == 5 {
+            if job.gradient_lane() == SECOND {
                 (received.increment[0] * inverse).store(&mut gradient.hoop[k..end]);
             } else {
                 (received.velocity[0] * inverse).store(&mut gradient.hoop[k..end]); // [AXI-2]
@@ -369,12 +356,13 @@ fn keep_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>
         }
         let mut modified = None;
         if S::MODIFIED {
-            let (xi, walls) = (job.space.between_walls(x), &job.space.walls);
+            let space = &job.background.space;
+            let (xi, walls) = (space.between_walls(x), &space.walls);
             modified = Some(each!(d in D => {
                 is_modified::<V, S, N>(xi[d], [V::splat(walls[d][0]), V::splat(walls[d][1])])
             }));
         }
-        let c = apic::affine(received, S::MOMENT, job.space.spacing, modified);
+        let c = apic::affine(received, S::MOMENT, job.background.space.spacing, modified);
         for a in 0..D {
             for b in 0..D {
                 c[a][b].store(&mut motion.affine[a][b][k..end]);
@@ -401,11 +389,12 @@ fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     x: [V; D],
     count: usize,
 ) -> u8 {
-    let xi = if S::MODIFIED { job.space.between_walls(x) } else { job.space.to_units(x) };
+    let space = &job.background.space;
+    let xi = if S::MODIFIED { space.between_walls(x) } else { space.to_units(x) };
     let mut inside = u8::MAX;
     for d in 0..D {
-        let place = xi[d] - V::splat(job.space.first_offset);
-        let lowest = f64::from(key[d]) * EDGE as f64;
+        let place = xi[d] - V::splat(space.first_offset);
+        let lowest = f64::from(key.at[d]) * EDGE as f64;
         let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
         inside &= !place.less_than(low) & place.less_than(high);
     }
@@ -448,14 +437,16 @@ fn load_row<V: Vector, const N: usize>(nodes: &[TileNode]) -> [V; N] {
     each!(n in N => V::load_node(&nodes[n]))
 }
 
-/// Nodes of a stencil that a host's point sees: calls `visit` with node number and weight; false if a node is missing.
+/// Nodes of a stencil that a point sees in a layer: calls `visit` with node number and weight; false if a
+/// node is missing.
 pub fn for_stencil_nodes<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    grid: &Grid<D>,
+    blocks: &Blocks<D>,
+    layer: u32,
     at: [At<f64>; D],
     visit: &mut dyn FnMut(usize, f64),
 ) -> bool {
     let mut complete = true;
-    Stencil::<f64, N, D>::new::<S>(at).nodes(|index, w, _| match grid.find_node(index) {
+    Stencil::<f64, N, D>::new::<S>(at).nodes(|index, w, _| match blocks.find_node(layer, index) {
         Some(node) => visit(node, w),
         None => complete = false,
     });

@@ -1,6 +1,6 @@
 //! Hooks: calls into the middle of a step, for Rust callers and tests. A step that is repeated smaller calls them again.
 
-use crate::background::Grid;
+use crate::background::Background;
 
 /// Where in a step a hook runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,35 +32,34 @@ pub trait Nodes {
     fn set_velocity(&mut self, node: usize, velocity: [f64; 3]);
 }
 
-impl<const D: usize> Nodes for Grid<D> {
+impl<const D: usize> Nodes for Background<D> {
     fn count(&self) -> usize {
-        self.node_count()
+        self.blocks.node_count()
     }
 
     fn position(&self, node: usize) -> [f64; 3] {
-        let index = self.node_index(node).unwrap_or([0; D]);
+        let index = self.blocks.node_index(node).unwrap_or([0; D]);
         let mut x = [0.0; 3];
         for d in 0..D {
-            x[d] = self.node_position(d, index[d]);
+            x[d] = self.space.node_position(d, index[d]);
         }
         x
     }
 
     fn mass(&self, node: usize) -> f64 {
-        self.velocity[self.record(node)][0]
+        self.nodes.velocity[self.blocks.record(node)].mass()
     }
 
     fn velocity(&self, node: usize) -> [f64; 3] {
-        let [_, v @ ..] = self.velocity[self.record(node)];
-        v
+        self.nodes.velocity[self.blocks.record(node)].vector()
     }
 
     fn set_velocity(&mut self, node: usize, velocity: [f64; 3]) {
-        let node = self.record(node);
-        let before = self.velocity[node];
-        self.velocity[node][1..=D].copy_from_slice(&velocity[..D]);
+        let node = self.blocks.record(node);
+        let (record, increment) = (&mut self.nodes.velocity[node], &mut self.nodes.increment[node]);
         for a in 0..D {
-            self.increment[node][a + 1] += velocity[a] - before[a + 1];
+            let before = std::mem::replace(record.component_mut(a), velocity[a]);
+            *increment.component_mut(a) += velocity[a] - before;
         }
     }
 }

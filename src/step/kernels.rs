@@ -1,6 +1,14 @@
 //! The one table that turns options into kernels.
 
-use crate::background::Grid;
+use super::grid_to_particles::for_stencil_nodes;
+use super::options::Options;
+use super::particles_to_grid::{Scattered, scatter};
+use super::parts::Method;
+use super::pass::{Pass, pass};
+use super::update_stress::Outcome;
+use crate::background::{Background, Blocks};
+use crate::parallel::Team;
+use crate::particles::Body;
 use crate::shape::cubic_bspline::CubicBspline;
 use crate::shape::gimp::Gimp;
 use crate::shape::linear::Linear;
@@ -9,21 +17,20 @@ use crate::shape::modified::Modified;
 use crate::shape::quadratic_bspline::QuadraticBspline;
 use crate::shape::stencil::{At, ShapeFunction};
 use crate::shape::{ShapeKind, WallTreatment};
-use crate::step::grid_to_particles::{GatherKernel, for_stencil_nodes, gather_chunk};
-use crate::step::options::Options;
-use crate::step::particles_to_grid::{Scatter, scatter_tiles};
 use crate::transfer::TransferKind;
 
-/// Calls the visitor with number and weight of every node of the stencil of a place; false if a node's block is not active.
-pub type NodesAt<const D: usize> = fn(&Grid<D>, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;
+/// Calls the visitor with number and weight of every node of the stencil of a place in a layer; false if a
+/// node's block is not active.
+pub type NodesAt<const D: usize> =
+    fn(&Blocks<D>, u32, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;
 
-/// The kernels of a world, called once per run of particles.
-#[derive(Clone, Copy, Debug)]
+/// The kernels of a world: those of the stages that depend on the shape function, each a whole stage.
+#[derive(Clone, Copy)]
 pub struct Kernels<const D: usize> {
-    /// m, mv and f to a tile.
-    pub scatter: Scatter<D>,
-    /// The grid to particles.
-    pub gather: GatherKernel<D>,
+    /// Particles to tiles.
+    pub scatter: fn(&mut Background<D>, &[Body], &Method<D>, &Team, Scattered),
+    /// The grid to particles, and what follows chunk by chunk.
+    pub pass: fn(&mut [Body], &Background<D>, &Method<D>, &Team, &Pass) -> Outcome,
     /// The nodes around a point.
     pub nodes_at: NodesAt<D>,
     /// Σ w (x_i − x_p)² along one axis, in units of h².
@@ -53,8 +60,8 @@ impl<const D: usize> Kernels<D> {
 
     fn of<S: ShapeFunction<N>, const N: usize>() -> Self {
         Self {
-            scatter: scatter_tiles::<S, N, D>,
-            gather: gather_chunk::<S, N, D>,
+            scatter: scatter::<S, N, D>,
+            pass: pass::<S, N, D>,
             nodes_at: for_stencil_nodes::<S, N, D>,
             moment: |at| {
                 let axis = S::axis::<f64>(at);

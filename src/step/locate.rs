@@ -13,21 +13,19 @@
 pub mod full;
 pub mod movers;
 
-use rayon::prelude::*;
-
-use crate::background::{EDGE, Grid, GridPolicy, Key, Run};
+use super::freshness::Freshness;
+use super::options::Options;
+use super::parts::particle_count;
+use crate::background::space::FARTHEST;
+use crate::background::{Background, Blocks, EDGE, GridPolicy, Key, Run, Space};
 use crate::error::{Error, Place, Result, Status};
 use crate::memory::{refill, reserve};
-use crate::particles::{Mark, Moves};
+use crate::parallel::{Cut, Team};
+use crate::particles::{Body, Mark, Moves};
 use crate::simd::Real;
-use crate::world::state::{Body, Space, State};
 
 use full::{Sorter, plan_sort};
 use movers::{Regrouper, plan_moves};
-
-/// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther away a double is too coarse
-/// for the small moves of a step.
-pub const FARTHEST: f64 = 1e8;
 
 /// What memory is for, if there is none.
 const SORTING: &str = "the buffers of the sort";
@@ -60,15 +58,15 @@ pub struct Plan<const D: usize> {
 
 impl<const D: usize> Plan<D> {
     /// An empty plan, with room for all particles to move and for about as many runs as there are.
-    fn clear(&mut self, world: &State<D>) -> Result<()> {
-        let runs = world.bodies.iter().map(|body| body.runs.len()).sum();
+    fn clear(&mut self, bodies: &[Body]) -> Result<()> {
+        let runs = bodies.iter().map(|body| body.runs.len()).sum();
         self.blocks_change = false;
         self.moves.clear();
         refill(&mut self.runs, runs, SORTING)?;
         refill(&mut self.keys, runs, SORTING)?;
-        refill(&mut self.ends, world.bodies.len(), SORTING)?;
-        reserve(&mut self.moves.from, world.particle_count(), SORTING)?;
-        reserve(&mut self.moves.to, world.particle_count(), SORTING)
+        refill(&mut self.ends, bodies.len(), SORTING)?;
+        reserve(&mut self.moves.from, particle_count(bodies), SORTING)?;
+        reserve(&mut self.moves.to, particle_count(bodies), SORTING)
     }
 
     /// Adds a run of the body in hand.
@@ -87,62 +85,76 @@ impl<const D: usize> Plan<D> {
 }
 
 /// Moves particles into the runs of their blocks if any has left its own.
-pub fn locate<const D: usize>(world: &mut State<D>) -> Result<()> {
-    if !world.regroup {
-        if world.rescan || world.options.grid_policy == GridPolicy::Static {
-            mark_moved(world);
+pub fn locate<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    options: &Options,
+    sorting: &mut Sorting<D>,
+    freshness: &mut Freshness,
+    team: &Team,
+) -> Result<()> {
+    let Sorting { plan, sorter, regrouper } = sorting;
+    if freshness.is_grouped() {
+        if !freshness.is_marked() || options.grid_policy == GridPolicy::Static {
+            mark_moved(bodies, background, options, team);
         }
-        if world.bodies.iter().all(|body| body.particles.moved.iter().all(|word| *word == 0)) {
-            world.grid.no_change();
-            world.rescan = false;
+        if bodies.iter().all(|body| body.particles.moved.iter().all(|word| *word == 0)) {
+            background.blocks.no_change();
+            freshness.located();
             return Ok(());
         }
     }
-    let mut sorting = std::mem::take(&mut world.sorting);
-    let result = make_plan(world, &mut sorting).and_then(|()| carry_out(world, &mut sorting.plan));
-    world.sorting = sorting;
-    result
-}
-
-fn make_plan<const D: usize>(world: &State<D>, sorting: &mut Sorting<D>) -> Result<()> {
-    let Sorting { plan, sorter, regrouper } = sorting;
-    if world.regroup || !plan_moves(world, regrouper, plan)? {
-        plan_sort(world, sorter, plan)?;
+    let near = Near { space: &background.space, options };
+    if !freshness.is_grouped() || !plan_moves(bodies, &background.blocks, near, regrouper, plan)? {
+        plan_sort(bodies, near, sorter, plan)?;
     }
+    freshness.locating();
+    carry_out(bodies, background, options, plan, team)?;
+    freshness.located();
     Ok(())
 }
 
 /// Makes the blocks that the plan needs, moves the particles and deals the runs out to tiles.
-fn carry_out<const D: usize>(world: &mut State<D>, plan: &mut Plan<D>) -> Result<()> {
-    world.regroup = true; // until it is done: without memory the runs would not belong to the new blocks
-    world.grid.no_change();
+fn carry_out<const D: usize>(
+    bodies: &mut [Body],
+    background: &mut Background<D>,
+    options: &Options,
+    plan: &mut Plan<D>,
+    team: &Team,
+) -> Result<()> {
+    background.blocks.no_change();
     if plan.blocks_change {
-        match world.options.grid_policy {
+        match options.grid_policy {
             GridPolicy::Static => {}
-            policy => world.grid.set_owners(&plan.keys, policy == GridPolicy::GrowOnly)?,
+            policy => background.set_owners(&plan.keys, policy == GridPolicy::GrowOnly)?,
         }
         for (run, key) in plan.runs.iter_mut().zip(&plan.keys) {
-            run.block = world.grid.find(key).expect("owners are active blocks");
+            run.block = background.blocks.find(key).expect("owners are active blocks");
         }
     }
     let (mut run, mut done) = (0, Mark::default());
-    for (body, (end, last)) in world.bodies.iter_mut().zip(&plan.ends) {
+    for (body, (end, last)) in bodies.iter_mut().zip(&plan.ends) {
         refill(&mut body.runs, end - run, SORTING)?;
         body.runs.extend_from_slice(&plan.runs[run..*end]);
-        body.particles.rearrange(plan.moves.between(done, *last), world.parallel);
+        body.particles.rearrange(plan.moves.between(done, *last), team);
         body.particles.moved.fill(0);
         (run, done) = (*end, *last);
     }
-    world.tiles.assign(plan.runs.iter().copied(), world.grid.place(), D)?;
-    (world.regroup, world.rescan) = (false, false);
-    Ok(())
+    background.tiles.assign(plan.runs.iter().copied(), background.blocks.place(), D)
+}
+
+/// Where particles may stand.
+#[derive(Clone, Copy)]
+struct Near<'a, const D: usize> {
+    space: &'a Space<D>,
+    options: &'a Options,
 }
 
 /// Block of a particle and the number of its cell in the block; None if it is too far away or not finite.
 #[inline(always)]
-fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)> {
+fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32)> {
     let xi = space.between_walls(x);
-    let mut key = [0; D];
+    let mut at = [0; D];
     let mut cell = 0;
     for d in 0..D {
         let first = Real::floor(xi[d] - space.first_offset);
@@ -150,31 +162,26 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<(Key<D>, u32)>
             return None;
         }
         let first = first as i64;
-        key[d] = first.div_euclid(EDGE as i64) as i32;
+        at[d] = first.div_euclid(EDGE as i64) as i32;
         cell = cell * EDGE as u32 + first.rem_euclid(EDGE as i64) as u32;
     }
-    Some((key, cell))
+    Some((at, cell))
 }
 
 /// Block and cell of particle k of a body, or the error that it is outside the grid.
 #[inline(always)]
-fn place_inside<const D: usize>(
-    world: &State<D>,
-    body: &Body,
-    space: &Space<D>,
-    k: usize,
-) -> Result<(Key<D>, u32)> {
+fn place_inside<const D: usize>(near: Near<'_, D>, body: &Body, k: usize) -> Result<(Key<D>, u32)> {
     let x = body.particles.get::<D>(body.particles.layout.position, k);
-    match place(space, x) {
-        Some(found) if world.inside_box(&x) => Ok(found),
-        _ => Err(outside(world, body, k, x)),
+    match place(near.space, x) {
+        Some((at, cell)) if near.options.holds(&x) => Ok((Key { layer: body.layer, at }, cell)),
+        _ => Err(outside(near.options, body, k, x)),
     }
 }
 
 #[cold]
-fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D]) -> Error {
+fn outside<const D: usize>(options: &Options, body: &Body, k: usize, x: [f64; D]) -> Error {
     let id = body.particles.id[k];
-    let limit = match world.options.grid_policy {
+    let limit = match options.grid_policy {
         GridPolicy::Static => {
             "the box of the static grid (use a larger box or grid_policy dynamic)"
         }
@@ -184,12 +191,12 @@ fn outside<const D: usize>(world: &State<D>, body: &Body, k: usize, x: [f64; D])
         Status::OutsideGrid,
         format!("particle {id} of body {} at {x:?} is outside {limit}", body.id),
     )
-    .at(Place { particle: Some(id), body: Some(body.id), ..world.place() })
+    .at(Place { particle: Some(id), body: Some(body.id), ..Place::default() })
 }
 
 /// Refuses particles on or beyond the axis of symmetry.
-pub fn check_radii<const D: usize>(world: &State<D>) -> Result<()> {
-    for body in world.bodies.iter().filter(|_| world.options.axisymmetric) {
+pub fn check_radii(bodies: &[Body], options: &Options) -> Result<()> {
+    for body in bodies.iter().filter(|_| options.axisymmetric) {
         let radii = body.particles.column(body.particles.layout.position);
         let least = radii.iter().fold(f64::INFINITY, |least, r| least.min(*r));
         if least > 0.0 {
@@ -201,52 +208,51 @@ pub fn check_radii<const D: usize>(world: &State<D>) -> Result<()> {
             "particle {id} of body {} has crossed the axis of symmetry, to x = {:e}: add a slip wall at x = 0, or take smaller steps",
             body.id, radii[k]
         );
-        let place = Place { particle: Some(id), body: Some(body.id), ..world.place() };
+        let place = Place { particle: Some(id), body: Some(body.id), ..Place::default() };
         return Err(Error::new(Status::OutsideGrid, text).at(place));
     }
     Ok(())
 }
 
 /// Marks every particle that may have left the block of its run, or the box of a static grid, and takes other marks away.
-fn mark_moved<const D: usize>(world: &mut State<D>) {
-    let (space, parallel) = (world.space(), world.parallel);
-    let limits = match world.options.grid_policy {
-        GridPolicy::Static => Some((world.options.box_min, world.options.box_max)),
+fn mark_moved<const D: usize>(
+    bodies: &mut [Body],
+    background: &Background<D>,
+    options: &Options,
+    team: &Team,
+) {
+    let limits = match options.grid_policy {
+        GridPolicy::Static => Some((options.box_min, options.box_max)),
         _ => None,
     };
-    let State { bodies, grid, .. } = world;
+    let Background { space, blocks, .. } = background;
     for body in bodies {
         let Body { particles, runs, .. } = body;
         let (columns, moved) = particles.positions_and_moved::<D>();
-        let mark = |(n, words): (usize, &mut [u64])| {
+        team.for_each_piece(Cut(moved, WORDS), 1, |n, words| {
             words.fill(0);
             let (first, end) = (64 * WORDS * n, 64 * WORDS * n + 64 * words.len());
             let start = runs.partition_point(|run| run.end as usize <= first);
             for run in runs[start..].iter().take_while(|run| (run.first as usize) < end) {
-                let inside = sure_inside(grid, &space, run.block, limits);
+                let inside = sure_inside(blocks, space, run.block, limits);
                 let range = (first.max(run.first as usize), end.min(run.end as usize));
                 mark_run(&columns, &inside, range, words, first);
             }
-        };
-        if parallel {
-            moved.par_chunks_mut(WORDS).enumerate().for_each(mark);
-        } else {
-            moved.chunks_mut(WORDS).enumerate().for_each(mark);
-        }
+        });
     }
 }
 
 /// Positions that are in a block in spite of all round-off [m], lower and upper corner.
 fn sure_inside<const D: usize>(
-    grid: &Grid<D>,
+    blocks: &Blocks<D>,
     space: &Space<D>,
     slot: u32,
     limits: Option<([f64; 3], [f64; 3])>,
 ) -> ([f64; D], [f64; D]) {
-    let key = grid.keys()[slot as usize];
+    let key = blocks.keys()[slot as usize];
     let (mut low, mut high) = ([0.0; D], [0.0; D]);
     for d in 0..D {
-        let lowest = f64::from(key[d]) * EDGE as f64 + space.first_offset;
+        let lowest = f64::from(key.at[d]) * EDGE as f64 + space.first_offset;
         let edge = |cells: f64| space.origin[d] + (lowest + cells) * space.spacing;
         // positions, their differences to the origin and their quotients by the spacing are each exact to 2^-53
         let scale = space.origin[d].abs() + (lowest.abs() + EDGE as f64) * space.spacing;

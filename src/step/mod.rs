@@ -1,34 +1,41 @@
 //! One explicit step of the material point method: read this file and you have read the algorithm.
 //!
-//! | stage | produces | file |
-//! |---|---|---|
-//! | how far may we go | dt | [`time_step`] |
-//! | sort particles into blocks | runs, tiles, active blocks | [`locate`](mod@locate) |
-//! | keep the start | a copy of the particles, where retries are allowed | [`retry`] |
-//! | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
-//! | add the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
-//! | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
-//! | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
-//! | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
-//! | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
-//! | average the dilation | tr L_p of bodies with F-bar | [`average_dilation`](mod@average_dilation) |
-//! | update the strain | Δε_p, V_p, rotated σ_p | [`update_strain`](mod@update_strain) |
-//! | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
+//! | | stage | produces | file |
+//! |---|---|---|---|
+//! | 0 | time step | how far may we go | [`time_step`] |
+//! | 1 | locate | runs, tiles, active blocks | [`locate`](mod@locate) |
+//! | 1b | keep the start | a copy of the particles, where retries are allowed | [`retry`] |
+//! | 2 | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
+//! | 2b | apply the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
+//! | 3 | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
+//! | 4 | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
+//! | 4b | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
+//! | 4c | average the dilation | tr L_p of bodies with F-bar | [`average_dilation`](mod@average_dilation) |
+//! | 5 | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
+//! | 6 | update the strain | Δε_p, V_p, F_p, rotated σ_p | [`update_strain`](mod@update_strain) |
+//! | 6b | update the domain | edges of contiguous-particle GIMP | [`update_domain`](mod@update_domain) |
+//! | 7 | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
 //!
-//! The last three go over a chunk of particles while it is in cache. [`naive`] is the same step as the textbook writes it.
+//! Stages 5 to 7 go over a chunk of particles while it is in cache, in one [`pass`](mod@pass). The orders
+//! below are the only functions that see all [`parts`] of a world; a stage takes those that it reads and
+//! writes. [`naive`] is the same step as the textbook writes it.
 
 pub mod apply_boundaries;
 pub mod apply_tractions;
 pub mod average_dilation;
 pub mod filter_velocities;
+pub mod freshness;
 pub mod grid_to_particles;
 pub mod hooks;
+pub mod integrate;
 pub mod kernels;
 pub mod locate;
 pub mod naive;
 pub mod options;
 pub mod order;
 pub mod particles_to_grid;
+pub mod parts;
+pub mod pass;
 pub mod retry;
 pub mod time_step;
 pub mod update_domain;
@@ -36,123 +43,155 @@ pub mod update_grid;
 pub mod update_strain;
 pub mod update_stress;
 
-use crate::step::hooks::HookPoint;
-use crate::world::state::{Piece, State};
-
 pub use order::StepOrder;
 
+use crate::error::Result;
+
 use apply_boundaries::{apply_boundaries, apply_boundaries_again};
-use apply_tractions::apply_tractions;
-use average_dilation::{average_dilation, share_dilation};
+use apply_tractions::{apply_tractions, report_tractions};
+use average_dilation::average_dilation;
 use filter_velocities::{filter_again, filter_start, filter_velocities};
-use grid_to_particles::{Gather, grid_to_particles};
+use grid_to_particles::Gather;
+use hooks::HookPoint;
 use locate::{check_radii, locate};
 use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
+use parts::Parts;
+use pass::{Moment, Pass, Then};
 use retry::keep_start;
-use time_step::Limits;
 use update_grid::update_grid;
-use update_strain::update_strain;
-use update_stress::{Failure, Outcome, update_stress};
+use update_stress::Outcome;
 
-/// One step of length `dt` [s]. On success gives the limits of the next time step.
-pub fn step<const D: usize>(world: &mut State<D>, dt: f64) -> Result<Limits, Box<Failure>> {
-    check_radii(world)?;
-    locate(world)?;
-    world.stale = false;
-    if world.options.retries > 0 {
-        keep_start(world)?;
+/// One step of length `dt` [s]. An error means that nothing was done.
+pub fn step<const D: usize>(world: &mut Parts<D>, dt: f64) -> Result<Outcome> {
+    sort(world)?;
+    if world.method.options.retries > 0 {
+        keep_start(&world.bodies, &mut world.conditions, &mut world.buffers.start)?;
     }
     world.hook(HookPoint::Start, dt);
-    let outcome = match world.options.order {
+    let outcome = match world.method.options.order {
         StepOrder::Usl => usl(world, dt),     // [ORD-1]
         StepOrder::Musl => musl(world, dt),   // [ORD-2]
         StepOrder::Usf => usf(world, dt),     // [ORD-3]
         StepOrder::Usavg => usavg(world, dt), // [ORD-4]
     };
     world.hook(HookPoint::End, dt);
-    (world.unreliable, world.wish) = (outcome.unreliable(), outcome.wish());
-    outcome.limits(dt)
+    Ok(outcome)
+}
+
+/// Maps particles and loads to the grid, as they are now.
+pub fn map<const D: usize>(world: &mut Parts<D>) -> Result<()> {
+    sort(world)?;
+    scatter(world, world.clock.time);
+    update(world, 0.0);
+    world.freshness.mapped_at(world.clock.time);
+    Ok(())
+}
+
+/// Every particle into the run of its block.
+fn sort<const D: usize>(world: &mut Parts<D>) -> Result<()> {
+    let Parts { bodies, background, method, buffers, freshness, team, .. } = world;
+    check_radii(bodies, &method.options)?;
+    locate(bodies, background, &method.options, &mut buffers.sorting, freshness, team)
+}
+
+/// Mass, momentum and force, loads of the time `at` [s] included, to the grid.
+fn scatter<const D: usize>(world: &mut Parts<D>, at: f64) {
+    let Parts { bodies, background, method, conditions, team, .. } = world;
+    particles_to_grid(background, bodies, method, team);
+    apply_tractions(&mut conditions.tractions, bodies, background, method, at);
+}
+
+/// Velocities at the end of the step.
+fn update<const D: usize>(world: &mut Parts<D>, dt: f64) {
+    let gravity = world.gravity(world.clock.time + 0.5 * dt); // [CND-2]
+    let Parts { background, method, team, .. } = world;
+    update_grid(&mut background.nodes, gravity, method, team, dt);
+}
+
+/// Walls and prescribed velocities.
+fn hold<const D: usize>(world: &mut Parts<D>, dt: f64) {
+    let Parts { background, conditions, method, buffers, team, clock, .. } = world;
+    let when = (clock.time, dt);
+    apply_boundaries(background, conditions, &method.options, &mut buffers.impulses, team, when);
 }
 
 /// From particles to the new velocities of the grid: what all orders have in common.
-fn move_grid<const D: usize>(world: &mut State<D>, dt: f64) {
-    particles_to_grid(world);
-    apply_tractions(world, dt);
+fn move_grid<const D: usize>(world: &mut Parts<D>, dt: f64) {
+    scatter(world, world.clock.time + 0.5 * dt);
+    report_tractions(&mut world.conditions.tractions);
     world.hook(HookPoint::AfterScatter, dt);
-    update_grid(world, dt);
-    apply_boundaries(world, dt);
+    update(world, dt);
+    hold(world, dt);
     world.hook(HookPoint::AfterBoundaries, dt);
-    filter_velocities(world);
+    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
+    filter_velocities(bodies, background, method, conditions, &mut buffers.filtering, team);
+}
+
+/// A pass over the particles; `strained` is the time over which gradients strain them [s], if they do.
+fn take<const D: usize>(
+    world: &mut Parts<D>,
+    gather: Gather,
+    dt: f64,
+    strained: Option<f64>,
+) -> Outcome {
+    let Parts { bodies, background, method, team, clock, .. } = world;
+    let moment = |dt| Moment { time: clock.time, step: clock.step, dt };
+    let then = strained.map_or(Then::Nothing, |dt| Then::Stress(moment(dt)));
+    (method.kernels.pass)(bodies, background, method, team, &Pass { gather, dt, then })
+}
+
+/// The mean rates of volume for bodies with F-bar.
+fn average<const D: usize>(world: &mut Parts<D>, gather: Gather) {
+    let Parts { bodies, background, method, buffers, team, .. } = world;
+    average_dilation(bodies, background, method, &mut buffers.patches, team, gather);
 }
 
 /// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118 (1994) 179–196,
 /// doi:10.1016/0045-7825(94)90112-0.
-fn usl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+fn usl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
-    average_dilation(world, Gather::Gradient);
-    world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Everything, dt);
-        strain(piece, dt)
-    })
+    average(world, Gather::Gradient);
+    take(world, Gather::Everything, dt, Some(dt))
 }
 
 /// Modified update stress last: the new particle velocities, with their affine part, are mapped to the grid again, and the velocity
 /// gradient is taken of those. (Without the affine part the gradient would come of a field filtered twice and positions of one filtered
 /// once: sand would swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
-fn musl<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+fn musl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
-    world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Velocity, dt);
-        Outcome::default()
-    });
-    velocities_to_grid(world, Scattered::Momentum);
-    apply_boundaries_again(world);
-    filter_again(world);
-    average_dilation(world, Gather::SecondGradient);
-    world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::PositionAndGradient, dt);
-        strain(piece, dt)
-    })
+    take(world, Gather::Velocity, dt, None);
+    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
+    velocities_to_grid(background, bodies, method, team, Scattered::Momentum);
+    apply_boundaries_again(background, conditions, team);
+    filter_again(bodies, background, method, conditions, &mut buffers.filtering, team);
+    average(world, Gather::SecondGradient);
+    take(world, Gather::PositionAndGradient, dt, Some(dt))
 }
 
 /// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180 (2002) 383–403, doi:10.1006/jcph.2002.7103.
-fn usf<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
+fn usf<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     let outcome = stress_of_start(world, dt);
     move_grid(world, dt);
-    world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Motion, dt);
-        Outcome::default()
-    });
+    take(world, Gather::Motion, dt, None);
     outcome
 }
 
 /// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn, CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
-fn usavg<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
-    let outcome = stress_of_start(world, 0.5 * dt);
+fn usavg<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
+    let first = stress_of_start(world, 0.5 * dt);
     move_grid(world, dt);
-    average_dilation(world, Gather::Gradient);
-    outcome.merge(world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Everything, dt);
-        strain(piece, 0.5 * dt)
-    }))
+    average(world, Gather::Gradient);
+    first.merge(take(world, Gather::Everything, dt, Some(0.5 * dt)))
 }
 
 /// Updates the stress over `dt` from the velocities that the particles have.
-fn stress_of_start<const D: usize>(world: &mut State<D>, dt: f64) -> Outcome {
-    particles_to_grid(world);
-    update_grid(world, 0.0);
-    apply_boundaries(world, dt);
-    filter_start(world);
-    average_dilation(world, Gather::Gradient);
-    world.for_each_chunk(|piece| {
-        grid_to_particles(piece, Gather::Gradient, dt);
-        strain(piece, dt)
-    })
-}
-
-/// From the velocity gradients of a chunk to its stresses.
-fn strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> Outcome {
-    share_dilation(piece);
-    update_strain(piece, dt);
-    update_stress(piece, dt)
+fn stress_of_start<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
+    let Parts { bodies, background, method, team, .. } = world;
+    particles_to_grid(background, bodies, method, team);
+    update(world, 0.0);
+    hold(world, dt);
+    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
+    filter_start(bodies, background, method, conditions, &mut buffers.filtering, team);
+    average(world, Gather::Gradient);
+    take(world, Gather::Gradient, dt, Some(dt))
 }

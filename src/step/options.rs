@@ -1,10 +1,10 @@
 //! Options of a world, their defaults and their rules.
 
-use crate::background::GridPolicy;
+use super::order::StepOrder;
+use crate::background::space::FARTHEST;
+use crate::background::{GridPolicy, Space};
 use crate::error::{Error, Result, Status};
 use crate::shape::{ShapeKind, WallTreatment};
-use crate::step::StepOrder;
-use crate::step::locate::FARTHEST;
 use crate::transfer::{TransferKind, filter};
 
 /// Options of a world.
@@ -131,6 +131,22 @@ impl Options {
     /// Whether shape functions are modified next to walls; linear ones have nothing to modify.
     pub fn modifies_shapes(&self) -> bool {
         self.wall_treatment == WallTreatment::Modified && self.shape != ShapeKind::Linear
+    }
+
+    /// The place of the grid, without walls.
+    pub fn space<const D: usize>(&self) -> Space<D> {
+        let reach = match self.wall_treatment {
+            WallTreatment::Plain => self.shape.wall_reach(),
+            WallTreatment::Modified => 0.0,
+        };
+        let origin = std::array::from_fn(|d| self.origin[d]);
+        Space::new(self.spacing, origin, self.shape.first_offset(), reach)
+    }
+
+    /// Whether a position lies in the box of a static grid; true for other grids.
+    pub fn holds<const D: usize>(&self, x: &[f64; D]) -> bool {
+        let (min, max) = (&self.box_min, &self.box_max);
+        self.grid_policy != GridPolicy::Static || (0..D).all(|d| min[d] <= x[d] && x[d] <= max[d])
     }
 
     /// Gravity must be finite, and along the axis in axial symmetry.

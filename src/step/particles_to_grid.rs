@@ -10,38 +10,31 @@
 
 use std::marker::PhantomData;
 
-use rayon::prelude::*;
-
+use super::parts::Method;
 use crate::background::blocks::Neighbours;
-use crate::background::key::block_nodes;
+use crate::background::nodes::{FIRST, MASS, SECOND, parted};
 use crate::background::tiles::{TileNode, Tiles, shared_rows};
-use crate::background::{EDGE, Key, Lanes, Run};
-use crate::particles::Particles;
-use crate::shape::stencil::ShapeFunction;
+use crate::background::{Background, EDGE, Key, Record, Run, Space, block_nodes};
+use crate::parallel::{Cut, Divide, Team};
+use crate::particles::{Body, Particles};
+use crate::shape::stencil::{ShapeFunction, Stencil};
 use crate::shape::weights::{Axes, BATCH, GROUPS, Weights, corners, span};
 use crate::simd::{Isa, Kernel, LANES, Vector, each, prefetch};
 use crate::tensor::SYMMETRIC_INDEX;
-use crate::world::state::{Body, Space, State};
 
 /// What a scatter needs beside the tiles that it fills.
 #[derive(Clone, Copy)]
-pub struct ScatterJob<'a, const D: usize> {
-    /// The instruction set.
-    pub isa: Isa,
-    /// The bodies.
-    pub bodies: &'a [Body],
+struct ScatterJob<'a, const D: usize> {
+    isa: Isa,
+    bodies: &'a [Body],
     /// Keys of the blocks, by slot.
-    pub keys: &'a [Key<D>],
-    /// Origin and spacing.
-    pub space: &'a Space<D>,
+    keys: &'a [Key<D>],
+    space: &'a Space<D>,
     /// All runs.
-    pub runs: &'a [Run],
-    /// For each tile to fill its runs, as a range of `runs`.
-    pub tiles: &'a [(u32, u32)],
-    /// What to map.
-    pub what: Scattered,
+    runs: &'a [Run],
+    what: Scattered,
     /// Whether x is a radius, and hoop stresses push along it.
-    pub axisymmetric: bool,
+    axisymmetric: bool,
 }
 
 /// What a scatter maps beside the mass.
@@ -55,96 +48,100 @@ pub enum Scattered {
     Filtered,
 }
 
-/// The scatter of all particles of some tiles that stand one after the other.
-pub type Scatter<const D: usize> = fn(&ScatterJob<'_, D>, &mut [TileNode]);
-
 /// Maps mass, momentum and the forces of the stresses to the grid.
-pub fn particles_to_grid<const D: usize>(world: &mut State<D>) {
-    scatter(world, Scattered::Everything);
-    let State { grid, tiles, parallel, context, .. } = world;
-    let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
-    let pull = |(n, (low, high)): (usize, (&mut [Lanes], &mut [Lanes]))| {
-        isa.dispatch(Pull::<D> { tiles, around, first: n * BLOCKS, low, high: Some(high) });
-    };
-    if *parallel {
-        let records = grid.velocity.par_chunks_mut(nodes).zip(grid.force.par_chunks_mut(nodes));
-        records.enumerate().for_each(pull);
-    } else {
-        let records = grid.velocity.chunks_mut(nodes).zip(grid.force.chunks_mut(nodes));
-        records.enumerate().for_each(pull);
-    }
+pub fn particles_to_grid<const D: usize>(
+    background: &mut Background<D>,
+    bodies: &[Body],
+    method: &Method<D>,
+    team: &Team,
+) {
+    (method.kernels.scatter)(background, bodies, method, team, Scattered::Everything);
+    let Background { blocks, nodes, tiles, .. } = background;
+    let (around, size) = (&blocks.backward[..], BLOCKS * block_nodes(D));
+    let records = (Cut(&mut nodes.velocity[..], size), Cut(&mut nodes.force[..], size));
+    team.for_each_piece(records, 1, |n, (low, high)| {
+        let pull = Pull::<D> { tiles, around, first: n * BLOCKS, low, high: Some(high) };
+        method.isa.dispatch(pull);
+    });
 }
 
-/// Maps the momentum of the particles into R1: that of their new velocities (second scatter of MUSL), or of those that go through a filter.
-pub fn velocities_to_grid<const D: usize>(world: &mut State<D>, what: Scattered) {
-    scatter(world, what);
-    let State { grid, tiles, parallel, context, .. } = world;
-    let (isa, around, nodes) = (context.isa(), &grid.backward[..], BLOCKS * block_nodes(D));
-    let pull = |(n, low): (usize, &mut [Lanes])| {
-        isa.dispatch(Pull::<D> { tiles, around, first: n * BLOCKS, low, high: None });
-    };
-    if *parallel {
-        grid.increment.par_chunks_mut(nodes).enumerate().for_each(pull);
-    } else {
-        grid.increment.chunks_mut(nodes).enumerate().for_each(pull);
-    }
+/// Maps the momentum of the particles into the increments: that of their new velocities (second scatter of
+/// MUSL), or of those that go through a filter.
+pub fn velocities_to_grid<const D: usize>(
+    background: &mut Background<D>,
+    bodies: &[Body],
+    method: &Method<D>,
+    team: &Team,
+    what: Scattered,
+) {
+    (method.kernels.scatter)(background, bodies, method, team, what);
+    let Background { blocks, nodes, tiles, .. } = background;
+    let (around, size) = (&blocks.backward[..], BLOCKS * block_nodes(D));
+    team.for_each_piece(Cut(&mut nodes.increment[..], size), 1, |n, low| {
+        let pull = Pull::<D> { tiles, around, first: n * BLOCKS, low, high: None };
+        method.isa.dispatch(pull);
+    });
 }
 
-/// Fills the tiles.
-fn scatter<const D: usize>(world: &mut State<D>, what: Scattered) {
-    let (space, kernel) = (world.space(), world.kernels.scatter);
-    let State { bodies, grid, tiles, context, options, .. } = world;
+/// Whole-stage entry of the kernel table: fills the tiles.
+pub fn scatter<S: ShapeFunction<N>, const N: usize, const D: usize>(
+    background: &mut Background<D>,
+    bodies: &[Body],
+    method: &Method<D>,
+    team: &Team,
+    what: Scattered,
+) {
+    let Background { blocks, tiles, space, .. } = background;
+    let job = ScatterJob {
+        isa: method.isa,
+        bodies,
+        keys: blocks.keys(),
+        space,
+        runs: &tiles.runs,
+        what,
+        axisymmetric: method.options.axisymmetric,
+    };
     let nodes = tiles.tile_nodes(D);
-    let fill = |part: &mut [TileNode], first: usize| {
-        let job = ScatterJob {
-            isa: context.isa(),
-            bodies,
-            keys: grid.keys(),
-            space: &space,
-            runs: &tiles.runs,
-            tiles: &tiles.tiles[first..first + part.len() / nodes],
-            what,
-            axisymmetric: options.axisymmetric,
-        };
-        kernel(&job, part);
+    let all = Filling {
+        nodes: &mut tiles.nodes[..nodes * tiles.tiles.len()],
+        tile_nodes: nodes,
+        first: 0,
+        start: &tiles.start,
     };
-    let all = &mut tiles.nodes[..nodes * tiles.tiles.len()];
-    if world.parallel {
-        let work = |part: &mut [TileNode], first: usize| {
-            context.mark_worker();
-            fill(part, first);
-        };
-        split_tiles(all, (nodes, 0), &tiles.start, &work);
-    } else {
-        fill(all, 0);
-    }
+    let runs_of_tiles = &tiles.tiles;
+    team.for_each(all, |Filling { nodes, tile_nodes, first, .. }| {
+        let of_tiles = &runs_of_tiles[first..first + nodes.len() / tile_nodes];
+        job.isa.dispatch(ScatterTiles::<S, N, D>(&job, of_tiles, nodes, PhantomData));
+    });
 }
 
 /// Particles that one thread takes at least.
 const GRAIN: u32 = 4096;
 
-/// Calls `work` with parts of the tiles and the number of the first of each, in parallel. The tiles are split in halves by particles,
-/// `start` being their running count, so that a thin layer and a dense heap balance.
-fn split_tiles(
-    tiles: &mut [TileNode],
-    (nodes, first): (usize, usize),
-    start: &[u32],
-    work: &(impl Fn(&mut [TileNode], usize) + Sync),
-) {
-    let count = tiles.len() / nodes;
-    let (low, high) = (start[first], start[first + count]);
-    if count < 2 || high - low <= GRAIN {
-        work(tiles, first);
-        return;
+/// Tiles to fill, the first of them number `first`. They are divided by particles, `start` being their
+/// running count, so that a thin layer and a dense heap balance.
+struct Filling<'a> {
+    nodes: &'a mut [TileNode],
+    tile_nodes: usize,
+    first: usize,
+    start: &'a [u32],
+}
+
+impl Divide for Filling<'_> {
+    fn divide(self) -> (Self, Option<Self>) {
+        let Self { nodes, tile_nodes, first, start } = self;
+        let count = nodes.len() / tile_nodes;
+        let (low, high) = (start[first], start[first + count]);
+        if count < 2 || high - low <= GRAIN {
+            return (Self { nodes, tile_nodes, first, start }, None);
+        }
+        let middle = low + (high - low) / 2;
+        let half = start[first + 1..first + count].partition_point(|before| *before < middle) + 1;
+        let half = half.min(count - 1);
+        let (left, right) = nodes.split_at_mut(half * tile_nodes);
+        let part = |nodes, first| Self { nodes, tile_nodes, first, start };
+        (part(left, first), Some(part(right, first + half)))
     }
-    let middle = low + (high - low) / 2;
-    let half = start[first + 1..first + count].partition_point(|before| *before < middle) + 1;
-    let half = half.min(count - 1);
-    let (left, right) = tiles.split_at_mut(half * nodes);
-    rayon::join(
-        || split_tiles(left, (nodes, first), start, work),
-        || split_tiles(right, (nodes, first + half), start, work),
-    );
 }
 
 /// Blocks that pull in one call.
@@ -154,13 +151,13 @@ const BLOCKS: usize = 16;
 const BLOCK_NODES: usize = block_nodes(3);
 
 /// Adds up, corner by corner, what the tiles around each block hold for its nodes, and writes the halves of each node. Tiles have left
-/// the caches since they were filled: those of the next block are asked for while one is summed.
+/// the caches since they were filled: those of the next block are prefetched while one is summed.
 struct Pull<'a, const D: usize> {
     tiles: &'a Tiles,
     around: &'a [Neighbours],
     first: usize,
-    low: &'a mut [Lanes],
-    high: Option<&'a mut [Lanes]>,
+    low: &'a mut [Record],
+    high: Option<&'a mut [Record]>,
 }
 
 impl<const D: usize> Kernel for Pull<'_, D> {
@@ -174,7 +171,7 @@ impl<const D: usize> Kernel for Pull<'_, D> {
             let block = first + b;
             sums[..nodes].fill(TileNode::default());
             for corner in 0..1 << D {
-                ask_for_tile::<D>(tiles, around.get(block + 1), corner);
+                prefetch_tile::<D>(tiles, around.get(block + 1), corner);
                 for tile in tiles.around::<D>(around.get(block), corner) {
                     for (from, to, len) in shared_rows::<D>(tiles.edge, corner) {
                         for (sum, node) in sums[to..to + len].iter_mut().zip(&tile[from..]) {
@@ -183,22 +180,22 @@ impl<const D: usize> Kernel for Pull<'_, D> {
                     }
                 }
             }
-            for (to, TileNode([m, x, y, z, ..])) in low.iter_mut().zip(&sums) {
-                *to = [*m, *x, *y, *z];
+            for (to, sum) in low.iter_mut().zip(&sums) {
+                *to = parted(sum).0;
             }
             if let Some(high) = &mut high {
                 let high = &mut high[b * nodes..][..nodes];
-                for (to, TileNode([.., m, x, y, z])) in high.iter_mut().zip(&sums) {
-                    *to = [*m, *x, *y, *z];
+                for (to, sum) in high.iter_mut().zip(&sums) {
+                    *to = parted(sum).1;
                 }
             }
         }
     }
 }
 
-/// Asks the memory for the nodes that a block shares with the first tile at a corner.
+/// Prefetches the nodes that a block shares with the first tile at a corner.
 #[inline(always)]
-fn ask_for_tile<const D: usize>(tiles: &Tiles, around: Option<&Neighbours>, corner: usize) {
+fn prefetch_tile<const D: usize>(tiles: &Tiles, around: Option<&Neighbours>, corner: usize) {
     if let Some(tile) = tiles.around::<D>(around, corner).next() {
         for (from, _, len) in shared_rows::<D>(tiles.edge, corner) {
             (from..from + len).for_each(|n| prefetch(tile, n));
@@ -206,16 +203,9 @@ fn ask_for_tile<const D: usize>(tiles: &Tiles, around: Option<&Neighbours>, corn
     }
 }
 
-/// Kernel of the scatter.
-pub fn scatter_tiles<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    job: &ScatterJob<'_, D>,
-    tiles: &mut [TileNode],
-) {
-    job.isa.dispatch(ScatterTiles::<S, N, D>(job, tiles, PhantomData));
-}
-
 struct ScatterTiles<'a, S, const N: usize, const D: usize>(
     &'a ScatterJob<'a, D>,
+    &'a [(u32, u32)],
     &'a mut [TileNode],
     PhantomData<S>,
 );
@@ -224,10 +214,10 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterTile
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(job, tiles, _) = self;
+        let Self(job, of_tiles, tiles, _) = self;
         let nodes = (EDGE + N - 1).pow(D as u32);
         let mut batch = Batch::<V, N, D>::new();
-        for (tile, (first, end)) in tiles.chunks_exact_mut(nodes).zip(job.tiles) {
+        for (tile, (first, end)) in tiles.chunks_exact_mut(nodes).zip(of_tiles) {
             tile.fill(TileNode::default());
             for run in &job.runs[*first as usize..*end as usize] {
                 let particles = &job.bodies[run.body as usize].particles;
@@ -281,7 +271,7 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
         if S::SIZED {
             size = each!(d in D => V::load(&columns.size[d][k..k + LANES]));
         }
-        let stencil = job.space.stencil::<V, S, N>(x, size);
+        let stencil = Stencil::<V, N, D>::of_particles::<S>(job.space, x, size);
         self.weights[g].set(&stencil, true);
         self.corners[g] = corners(&stencil, key);
         payload(job, columns, (x[0], k), (&mut self.values[g], &mut self.columns[g]));
@@ -299,7 +289,7 @@ impl<V: Vector, const N: usize, const D: usize> Batch<V, N, D> {
     }
 }
 
-/// How many particles before its use a line of a column is asked for.
+/// Prefetch distance of the columns [particles].
 const AHEAD: usize = 64;
 
 /// The columns of a run that the scatter reads.
@@ -336,7 +326,7 @@ impl<'a, const D: usize> Columns<'a, D> {
         }
     }
 
-    /// Asks the memory for the particles from k on.
+    /// Prefetches the particles from k on.
     #[inline(always)]
     fn prefetch(&self, k: usize) {
         for d in 0..D {
@@ -369,9 +359,9 @@ fn payload<V: Vector, const D: usize>(
     let zero = V::splat(0.0);
     let mass = V::load(&columns.mass[k..k + LANES]);
     let mut value = [zero; LANES];
-    value[0] = mass; // [P2G-1]
+    value[MASS] = mass; // [P2G-1]
     for a in 0..D {
-        value[1 + a] = mass * V::load(&columns.velocity[a][k..k + LANES]); // [P2G-2]
+        value[FIRST + a] = mass * V::load(&columns.velocity[a][k..k + LANES]); // [P2G-2]
     }
     let whole = job.what == Scattered::Everything;
     if whole && (job.axisymmetric || columns.body_force.is_some()) {
@@ -386,7 +376,7 @@ fn payload<V: Vector, const D: usize>(
         let mh = mass * V::splat(job.space.spacing);
         for d in 0..D {
             for a in 0..D {
-                slopes[d][1 + a] = mh * V::load(&affine[a][d][k..k + LANES]); // [P2G-2]
+                slopes[d][FIRST + a] = mh * V::load(&affine[a][d][k..k + LANES]); // [P2G-2]
             }
         }
     }
@@ -395,7 +385,7 @@ fn payload<V: Vector, const D: usize>(
         for d in 0..D {
             for a in 0..D {
                 let stress = &columns.stress[SYMMETRIC_INDEX[a][d]];
-                slopes[d][5 + a] = scale * V::load(&stress[k..k + LANES]); // [P2G-3]
+                slopes[d][SECOND + a] = scale * V::load(&stress[k..k + LANES]); // [P2G-3]
             }
         }
     }
@@ -415,13 +405,13 @@ fn add_forces<V: Vector, const D: usize>(
 ) {
     if let Some(force) = &columns.body_force {
         for a in 0..D {
-            value[5 + a] = value[0] * V::load(&force[a][k..k + LANES]); // [P2G-4]
+            value[SECOND + a] = value[MASS] * V::load(&force[a][k..k + LANES]); // [P2G-4]
         }
     }
     if job.axisymmetric {
         let volume = V::load(&columns.volume[k..k + LANES]);
         let hoop = V::load(&columns.stress[2][k..k + LANES]);
-        value[5] = value[5] - volume * hoop / radius; // [AXI-1]
+        value[SECOND] = value[SECOND] - volume * hoop / radius; // [AXI-1]
     }
 }
 

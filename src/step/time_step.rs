@@ -7,12 +7,13 @@
 
 use lahar_plugin_abi::LAHAR_POINT_FAILED;
 
+use super::options::Options;
+use crate::boundary::Conditions;
+use crate::boundary::table::length;
 use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
 use crate::material::scratch::with_scratch;
-use crate::particles::CHUNK;
-use crate::step::options::Options;
-use crate::world::state::{Body, State};
+use crate::particles::{Body, CHUNK};
 
 /// What limits the next time step.
 #[derive(Clone, Copy, Debug)]
@@ -50,13 +51,26 @@ impl Limits {
     }
 }
 
+/// The stable time step [s] at the time `now` [s], from the limits of particles and materials.
+///
+/// What comes by tables counts with its largest value in the longest step that could be taken without it.
+pub fn stable_dt(limits: &Limits, options: &Options, conditions: &Conditions, now: f64) -> f64 {
+    let free = limits.stable_dt(options, 0.0);
+    let gravity = match &conditions.gravity {
+        None => length(&options.gravity),
+        Some(table) => table.largest(now, now + 0.5 * free),
+    };
+    let dt = limits.stable_dt(options, gravity);
+    conditions.limit(now, dt, options.cfl * options.spacing)
+}
+
 /// Asks the materials for wave speeds and diffusivities of the present state.
-pub fn limits_of_state<const D: usize>(world: &State<D>) -> Result<Limits> {
+pub fn limits_of_state<const D: usize>(bodies: &[Body], spacing: f64) -> Result<Limits> {
     let mut limits = Limits::default();
-    for body in &world.bodies {
+    for body in bodies {
         for first in (0..body.particles.len()).step_by(CHUNK) {
             let n = CHUNK.min(body.particles.len() - first);
-            limits = limits.merge(limits_of_chunk::<D>(body, first, n, world.options.spacing)?);
+            limits = limits.merge(limits_of_chunk::<D>(body, first, n, spacing)?);
         }
     }
     Ok(limits)

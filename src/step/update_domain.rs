@@ -1,20 +1,20 @@
-//! Stage 6a, domains of contiguous-particle GIMP: edges follow the diagonal of the stretch U in F = R U.
+//! Stage 6b, domains of contiguous-particle GIMP: edges follow the diagonal of the stretch U in F = R U.
 //!
 //! T. J. Charlton, W. M. Coombs, C. E. Augarde, Comput. Struct. 190 (2017) 108–125, doi:10.1016/j.compstruc.2017.05.004; a rotation leaves the
 //! diagonal of U alone, unlike that of F. How it compares with other choices: W. M. Coombs, C. E. Augarde, A. J. Brennan et al., Comput. Methods
 //! Appl. Mech. Engrg. 358 (2020) 112622, doi:10.1016/j.cma.2019.112622.
 
+use super::pass::Piece;
 use super::update_strain::{deformation_gradient, deformed, gradient};
-use crate::simd::{Kernel, LANES, Vector};
+use crate::simd::{Isa, Kernel, LANES, Vector};
 use crate::tensor::stretch_diagonal;
-use crate::world::state::Piece;
 
 /// Updates the edges of the particles of a chunk, whose deformation gradients are still those of the start.
-pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
-    piece.isa.dispatch(Domain(piece, dt));
+pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_>, isa: Isa, dt: f64) {
+    isa.dispatch(Domain::<D>(piece, dt));
 }
 
-struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>, f64);
 
 impl<const D: usize> Kernel for Domain<'_, '_, '_, D> {
     type Output = ();

@@ -8,39 +8,37 @@
 //! Damping takes α |F| from every component of the force F = f + m g, against the velocity: F ← F − α |F| sgn(v).
 //! P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods in Engineering Rock Mechanics (1987) 129–163.
 
-use rayon::prelude::*;
-
-use crate::background::Lanes;
+use super::parts::Method;
+use crate::background::nodes::pair_of_vectors;
+use crate::background::{Nodes, Record};
+use crate::parallel::{Cut, Team};
 use crate::simd::{Kernel, LANES, Vector};
-use crate::world::state::State;
 
 /// Nodes that one thread takes at a time.
 const NODES: usize = 1024;
 
-/// Turns momentum and force into velocity (R0) and its increment (R1).
-pub fn update_grid<const D: usize>(world: &mut State<D>, dt: f64) {
-    let (gravity, damping) = (world.gravity(world.time + 0.5 * dt), world.options.damping); // [CND-2]
-    let mut g = [0.0; LANES]; // of two nodes
-    for a in 0..D {
-        (g[1 + a], g[5 + a]) = (gravity[a], gravity[a]);
-    }
-    let isa = world.context.isa();
-    let update = |((r0, r1), force): ((&mut [Lanes], &mut [Lanes]), &[Lanes])| {
-        isa.dispatch(Update { r0, r1, force, g, damping, dt });
-    };
-    let grid = &mut world.grid;
-    if world.parallel {
-        let records = grid.velocity.par_chunks_mut(NODES).zip(grid.increment.par_chunks_mut(NODES));
-        records.zip(grid.force.par_chunks(NODES)).for_each(update);
-    } else {
-        update(((&mut grid.velocity, &mut grid.increment), &grid.force));
-    }
+/// Turns momentum and force into velocity and its increment.
+pub fn update_grid<const D: usize>(
+    nodes: &mut Nodes,
+    gravity: [f64; 3],
+    method: &Method<D>,
+    team: &Team,
+    dt: f64,
+) {
+    let g = pair_of_vectors::<D>(std::array::from_fn(|a| gravity[a]));
+    let damping = method.options.damping;
+    let Nodes { velocity, increment, force } = nodes;
+    let records =
+        (Cut(&mut velocity[..], NODES), Cut(&mut increment[..], NODES), Cut(&force[..], NODES));
+    team.for_each_piece(records, 1, |_, (velocity, increment, force)| {
+        method.isa.dispatch(Update { velocity, increment, force, g, damping, dt });
+    });
 }
 
 struct Update<'a> {
-    r0: &'a mut [Lanes],
-    r1: &'a mut [Lanes],
-    force: &'a [Lanes],
+    velocity: &'a mut [Record],
+    increment: &'a mut [Record],
+    force: &'a [Record],
     g: [f64; LANES],
     damping: f64,
     dt: f64,
@@ -51,24 +49,26 @@ impl Kernel for Update<'_> {
     #[inline(always)]
     fn run<V: Vector>(self) {
         let (g, dt) = (V::from_array(self.g), V::splat(self.dt));
-        let forces = self.force.as_flattened().chunks_exact(LANES);
-        let r0 = self.r0.as_flattened_mut().chunks_exact_mut(LANES);
-        let r1 = self.r1.as_flattened_mut().chunks_exact_mut(LANES);
-        for ((r0, r1), force) in r0.zip(r1).zip(forces) {
-            let (m, n) = (r0[0], r0[4]);
+        let velocities = self.velocity.as_chunks_mut::<2>().0;
+        let increments = self.increment.as_chunks_mut::<2>().0;
+        let forces = self.force.as_chunks::<2>().0;
+        for ((velocity, increment), force) in velocities.iter_mut().zip(increments).zip(forces) {
+            let (m, n) = (velocity[0].mass(), velocity[1].mass());
             let inverse = V::halves(inverse(m), inverse(n));
             let present = V::halves(present(m), present(n));
-            let before = V::load(r0) * inverse;
-            let mut acceleration = V::load(force).mul_add(inverse, g * present);
+            let before = Record::load_pair::<V>(velocity) * inverse;
+            let force = Record::load_pair::<V>(force);
+            let mut acceleration = force.mul_add(inverse, g * present);
             if self.damping > 0.0 {
                 let sign = before / before.abs().max(V::splat(f64::MIN_POSITIVE));
                 let resistance = V::splat(self.damping) * acceleration.abs() * sign;
                 acceleration = acceleration - resistance; // [GRD-2]
             }
             let change = acceleration * dt;
-            change.store(r1);
-            (before + change).store(r0); // [GRD-1]
-            (r0[0], r0[4]) = (m, n);
+            Record::store_pair(increment, change);
+            Record::store_pair(velocity, before + change); // [GRD-1]
+            velocity[0].set_mass(m);
+            velocity[1].set_mass(n);
         }
     }
 }

@@ -5,36 +5,37 @@
 //! of the midpoint rule there, which makes the Jaumann rate, or by the increment of the rotation R in F = R U, which makes that of
 //! A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965) 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
 
+use super::parts::Method;
+use super::pass::Piece;
+use super::update_domain::update_domain;
 use crate::material::{Input, Kinematics, Rotation};
 use crate::particles::ChunkMut;
+use crate::shape::ShapeKind;
 use crate::simd::{Kernel, LANES, Vector, each};
 use crate::tensor::{
     Rows, SYMMETRIC, determinant, exp, rotated, rotation_between, step_rotations, turned,
     turned_between,
 };
-use crate::world::state::{ChunkStage, Piece};
-
-use super::update_domain::update_domain;
 
 /// Fills the chunk's scratch with what the material takes, and updates volume and deformation gradient.
-pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) {
+pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_>, method: &Method<D>, dt: f64) {
+    let isa = method.isa;
     copy_state(piece);
     let objective = |rotation| rotation == Rotation::Objective;
     let model = piece.material.model();
     if model.states.iter().any(|state| objective(state.rotation)) {
-        piece.isa.dispatch(RotatedState(piece, dt));
+        isa.dispatch(RotatedState::<D>(piece, dt));
     }
-    if piece.resize {
-        update_domain(piece, dt);
+    if method.options.shape == ShapeKind::ContiguousGimp {
+        update_domain::<D>(piece, isa, dt);
     }
     match piece.chunk.layout.state > piece.chunk.layout.deformation_gradient {
-        false => piece.isa.dispatch(Strain::<D, false>(piece, dt)),
-        true => piece.isa.dispatch(Strain::<D, true>(piece, dt)),
+        false => isa.dispatch(Strain::<D, false>(piece, dt)),
+        true => isa.dispatch(Strain::<D, true>(piece, dt)),
     }
-    let Piece { chunk, scratch, ids, space, .. } = piece;
+    let Piece { chunk, scratch, ids, .. } = piece;
     let ids = &ids[chunk.first..][..chunk.len];
-    scratch.fill_inputs(&chunk.layout, |c| chunk.column(c), ids, space.spacing);
-    piece.lap(ChunkStage::Strained);
+    scratch.fill_inputs(&chunk.layout, |c| chunk.column(c), ids, method.options.spacing);
 }
 
 /// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the plane. Lanes without a point are zero: what
@@ -88,7 +89,7 @@ fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
 }
 
 /// Strain increment, start stress and volume; `F`: for particles that carry the deformation gradient.
-struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut Piece<'c, 's, D>, f64);
+struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut Piece<'c, 's>, f64);
 
 impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
     type Output = ();
@@ -144,7 +145,7 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
 }
 
 /// Copies the start state into the scratch.
-fn copy_state<const D: usize>(piece: &mut Piece<'_, '_, D>) {
+fn copy_state(piece: &mut Piece<'_, '_>) {
     let Piece { chunk, scratch, .. } = piece;
     let (layout, stride, n) = (chunk.layout, scratch.stride, chunk.len);
     for c in 0..layout.state_components() {
@@ -153,7 +154,7 @@ fn copy_state<const D: usize>(piece: &mut Piece<'_, '_, D>) {
 }
 
 /// Rotates the state variables that turn with the material, as the stress is.
-struct RotatedState<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>, f64);
+struct RotatedState<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>, f64);
 
 impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
     type Output = ();

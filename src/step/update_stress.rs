@@ -4,11 +4,11 @@
 
 use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP, LAHAR_POINT_UNRELIABLE};
 
+use super::pass::{Moment, Piece};
+use super::time_step::Limits;
 use crate::error::{Error, Place, Status};
 use crate::material::{Capsule, Occasion, StressBatch};
-use crate::simd::{Kernel, LANES, Vector};
-use crate::step::time_step::Limits;
-use crate::world::state::{ChunkStage, Piece};
+use crate::simd::{Isa, Kernel, LANES, Vector};
 
 /// Why a step failed, and the call of the model at the point where it did, if there is one.
 #[derive(Debug)]
@@ -65,19 +65,25 @@ pub struct Unreliable {
 
 impl Outcome {
     /// Both together; of two failures the first counts.
-    pub fn merge(self, other: Self) -> Self {
-        Self {
-            limits: self.limits.merge(other.limits),
-            wish: match (self.wish, other.wish) {
-                (Some(a), Some(b)) => Some(if b.factor < a.factor { b } else { a }),
-                (a, b) => a.or(b),
-            },
-            failure: self.failure.or(other.failure),
-            unreliable: match (self.unreliable, other.unreliable) {
-                (Some(a), Some(b)) => Some(Unreliable { points: a.points + b.points, ..a }),
-                (a, b) => a.or(b),
-            },
+    pub fn merge(mut self, other: Self) -> Self {
+        self.add(other);
+        self
+    }
+
+    /// Takes another into this one, which is the first.
+    pub fn add(&mut self, other: Self) {
+        self.limits = self.limits.merge(other.limits);
+        self.wish = match (self.wish, other.wish) {
+            (Some(a), Some(b)) => Some(if b.factor < a.factor { b } else { a }),
+            (a, b) => a.or(b),
+        };
+        if self.failure.is_none() {
+            self.failure = other.failure;
         }
+        self.unreliable = match (self.unreliable, other.unreliable) {
+            (Some(a), Some(b)) => Some(Unreliable { points: a.points + b.points, ..a }),
+            (a, b) => a.or(b),
+        };
     }
 
     /// The points that are less accurate than promised.
@@ -103,42 +109,46 @@ impl Outcome {
 }
 
 /// Updates stress, state and energy of a chunk.
-pub fn update_stress<const D: usize>(piece: &mut Piece<'_, '_, D>, dt: f64) -> Outcome {
-    let mut batch = StressBatch { dt, time: piece.time, step: piece.step, ..piece.scratch.batch() };
+pub fn update_stress<const D: usize>(
+    piece: &mut Piece<'_, '_>,
+    isa: Isa,
+    moment: Moment,
+) -> Outcome {
+    let Moment { time, step, dt } = moment;
+    let mut batch = StressBatch { dt, time, step, ..piece.scratch.batch() };
     if let Err(error) = piece.material.update(&mut batch) {
         return Outcome::failed(error.at(Place { body: Some(piece.body), ..Place::default() }));
     }
-    if let Some(failure) = failed_point(piece, dt) {
+    if let Some(failure) = failed_point::<D>(piece, moment) {
         return Outcome::failed(failure);
     }
     let wish = match smallest_wish(piece) {
         Ok(wish) => wish,
         Err(k) => {
             let text = "gave a factor on the time step that is not above 0";
-            return Outcome::failed(fault(piece, (k, dt), Status::MaterialFailed, text));
+            return Outcome::failed(fault::<D>(piece, k, moment, Status::MaterialFailed, text));
         }
     };
-    let (speed, finite) = piece.isa.dispatch(Commit(piece));
+    let (speed, finite) = isa.dispatch(Commit::<D>(piece));
     if !finite {
-        return Outcome::failed(not_finite(piece, dt));
+        return Outcome::failed(not_finite::<D>(piece, moment));
     }
     let diffusivities = piece.scratch.diffusivity.iter().take(piece.chunk.len);
     let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
-    piece.lap(ChunkStage::Stressed);
     let limits = Limits { speed, diffusivity, ..Limits::default() };
     Outcome { limits, wish, failure: None, unreliable: unreliable(piece) }
 }
 
-fn failed_point<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Option<Box<Failure>> {
+fn failed_point<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Option<Box<Failure>> {
     let status = &piece.scratch.status[..piece.chunk.len];
     if status.iter().fold(0, |worst, s| worst.max(*s)) < LAHAR_POINT_FAILED {
         return None;
     }
     let k = status.iter().position(|s| *s >= LAHAR_POINT_FAILED).unwrap_or(0);
-    Some(fault(piece, (k, dt), Status::MaterialFailed, "could not update"))
+    Some(fault::<D>(piece, k, moment, Status::MaterialFailed, "could not update"))
 }
 
-fn unreliable<const D: usize>(piece: &Piece<'_, '_, D>) -> Option<Unreliable> {
+fn unreliable(piece: &Piece<'_, '_>) -> Option<Unreliable> {
     let status = &piece.scratch.status[..piece.chunk.len];
     let points = status.iter().fold(0, |n, s| n + usize::from(*s == LAHAR_POINT_UNRELIABLE));
     if points == 0 {
@@ -149,7 +159,7 @@ fn unreliable<const D: usize>(piece: &Piece<'_, '_, D>) -> Option<Unreliable> {
 }
 
 /// The smallest step that a point of the chunk asks for; the place of a point whose factor makes no sense.
-fn smallest_wish<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<Option<Wish>, usize> {
+fn smallest_wish(piece: &Piece<'_, '_>) -> Result<Option<Wish>, usize> {
     let s = &piece.scratch;
     let n = piece.chunk.len;
     let (mut factor, mut place) = (1.0, None);
@@ -171,7 +181,7 @@ fn smallest_wish<const D: usize>(piece: &Piece<'_, '_, D>) -> Result<Option<Wish
 
 /// Writes energy, stress and state into the columns. Gives the largest c + |v|, and whether everything is finite and no wave speed
 /// negative.
-struct Commit<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's, D>);
+struct Commit<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>);
 
 impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
     type Output = (f64, bool);
@@ -233,7 +243,7 @@ impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
     }
 }
 
-fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Box<Failure> {
+fn not_finite<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Box<Failure> {
     let (chunk, s) = (&piece.chunk, &piece.scratch);
     let given = |output: &[f64], k: usize| output.get(k).is_none_or(|value| value.is_finite());
     let good = |k: &usize| {
@@ -244,17 +254,19 @@ fn not_finite<const D: usize>(piece: &Piece<'_, '_, D>, dt: f64) -> Box<Failure>
             && given(s.dt_factor, *k)
     };
     let k = (0..chunk.len).find(|k| !good(k));
-    fault(
+    fault::<D>(
         piece,
-        (k.unwrap_or(0), dt),
+        k.unwrap_or(0),
+        moment,
         Status::NonFinite,
         "gave or took a value that is not finite, or gave a negative wave speed,",
     )
 }
 
 fn fault<const D: usize>(
-    piece: &Piece<'_, '_, D>,
-    (k, dt): (usize, f64),
+    piece: &Piece<'_, '_>,
+    k: usize,
+    Moment { time, step, dt }: Moment,
     status: Status,
     what: &str,
 ) -> Box<Failure> {
@@ -269,7 +281,7 @@ fn fault<const D: usize>(
         piece.scratch.stress0_of(k),
     );
     let place = Place { body: Some(body), particle: Some(particle), ..Place::default() };
-    let occasion = Occasion { body, particle, step: piece.step, time: piece.time, dt };
+    let occasion = Occasion { body, particle, step, time, dt };
     let capsule = Capsule::of_point(piece.material, &piece.scratch, k, occasion);
     Box::new(Failure { error: Error::new(status, text).at(place), capsule: Some(capsule) })
 }

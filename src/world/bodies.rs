@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
+use crate::background::space::FARTHEST;
 use crate::error::{Error, Place, Result, Status};
 use crate::material::scratch::with_scratch;
 use crate::material::{Input, Material};
 use crate::memory::reserve;
 use crate::particles::seeding::{Fill, Region, fill};
-use crate::particles::{CHUNK, Extras, Layout, Particles};
+use crate::particles::{Body, CHUNK, Extras, Layout, Particles, Sizes};
 use crate::shape::ShapeKind;
-use crate::step::locate::FARTHEST;
 use crate::step::options::Options;
+use crate::step::parts::Parts;
 use crate::tensor::Mat3;
 
 use super::host_arrays::{ParticleArrays, Strided, Strides};
-use super::state::{Body, Sizes, State};
 
 /// Most particles of a body.
 const MOST: usize = u32::MAX as usize - 1;
@@ -22,7 +22,7 @@ const MOST: usize = u32::MAX as usize - 1;
 /// Temperature of new particles whose model wants it [K].
 const ROOM_TEMPERATURE: f64 = 293.15;
 
-impl<const D: usize> State<D> {
+impl<const D: usize> Parts<D> {
     /// Adds a body with the given id from arrays; on error nothing changes.
     pub fn add_particles(
         &mut self,
@@ -47,7 +47,7 @@ impl<const D: usize> State<D> {
                 "GIMP shape functions need the sizes of particles: give `size`, the edge lengths of their domains [m]",
             ));
         }
-        let h = self.options.spacing;
+        let h = self.method.options.spacing;
         if let (true, Some(size)) = (extras.size, &arrays.size) {
             let most = |k: usize| (0..D).fold(0.0, |most, d| f64::max(most, size.get(d, k)));
             if let Some(k) = (0..n).find(|k| most(*k) > h * (1.0 + 1e-9)) {
@@ -83,7 +83,8 @@ impl<const D: usize> State<D> {
                 particles.column_mut(layout.deformation_gradient + c).fill(1.0);
             }
         }
-        self.insert(Body { id, material: material.clone(), particles, runs: Vec::new(), sizes })
+        let material = material.clone();
+        self.insert(Body { id, layer: 0, material, particles, runs: Vec::new(), sizes })
     }
 
     /// Adds a body that fills a region.
@@ -101,13 +102,17 @@ impl<const D: usize> State<D> {
                 how.density, how.mass
             )));
         }
-        let (points, size) =
-            fill::<D>(region, how.particles_per_cell, self.options.spacing, self.grid.origin)?;
+        let (points, size) = fill::<D>(
+            region,
+            how.particles_per_cell,
+            self.method.options.spacing,
+            self.background.space.origin,
+        )?;
         let n = points.len();
         let area: f64 = size.iter().product();
         let uniform = [area];
         let (mut of_each, mut whole) = (Vec::new(), area * n as f64);
-        if self.options.axisymmetric {
+        if self.method.options.axisymmetric {
             reserve(&mut of_each, n, "the volumes of particles")?;
             of_each.extend(points.iter().map(|x| x[0] * area)); // [AXI-3]
             whole = of_each.iter().sum();
@@ -138,7 +143,7 @@ impl<const D: usize> State<D> {
 
     /// What bodies of this world and a material carry.
     fn extras(&self, material: &Material) -> Extras {
-        let Options { shape, transfer, body_force, .. } = self.options;
+        let Options { shape, transfer, body_force, .. } = self.method.options;
         let gradient = material.model().kinematics.carries_deformation_gradient();
         Extras {
             temperature: material.model().input(Input::Temperature).is_some(),
@@ -175,11 +180,16 @@ impl<const D: usize> State<D> {
             body.particles.column_mut(layout.temperature).fill(ROOM_TEMPERATURE);
         }
         self.check_particles(&body)?;
-        init_state(&mut body, self.options.spacing)?;
+        init_state(&mut body, self.method.options.spacing)?;
         self.check_particles(&body)?;
         self.bodies.push(body);
         self.particles_changed();
         Ok(())
+    }
+
+    /// Checks the particles of all bodies.
+    pub fn check_what_was_written(&self) -> Result<()> {
+        self.bodies.iter().try_for_each(|body| self.check_particles(body))
     }
 
     /// Checks everything that a host may have written: finite, masses and volumes positive, positions inside the grid.
@@ -189,7 +199,7 @@ impl<const D: usize> State<D> {
         let place = |k: usize| Place {
             body: Some(body.id),
             particle: Some(particles.id[k]),
-            ..self.place()
+            ..self.clock.place()
         };
         for c in 0..layout.components() {
             let positive = c == layout.mass
@@ -207,7 +217,7 @@ impl<const D: usize> State<D> {
                 return Err(Error::invalid(text).at(place(k)));
             }
         }
-        let space = self.space();
+        let space = &self.background.space;
         for k in 0..particles.len() {
             let x = particles.get::<D>(layout.position, k);
             let near = |d: usize| {
@@ -238,14 +248,14 @@ impl<const D: usize> State<D> {
                     return Err(Error::invalid(text).at(place(k)));
                 }
             }
-            if self.options.axisymmetric && x[0] <= 0.0 {
+            if self.method.options.axisymmetric && x[0] <= 0.0 {
                 let text = format!(
                     "particle {} at {x:?} must have a positive radius x: this world is axisymmetric about x = 0",
                     particles.id[k]
                 );
                 return Err(Error::invalid(text).at(place(k)));
             }
-            if far || !self.inside_box(&x) {
+            if far || !self.method.options.holds(&x) {
                 let text = format!(
                     "particle {} at {x:?} is outside the grid (1e8 cells around its origin and that of space, or the box of a static grid)",
                     particles.id[k]

@@ -1,99 +1,39 @@
-//! Conditions that depend on time: gravity by a table, velocities prescribed on the grid, tractions on surfaces.
+//! Conditions: walls, gravity by a table, velocities prescribed on the grid, tractions on surfaces.
 
-use crate::boundary::table::length;
-use crate::boundary::{PrescribedVelocity, Surface, Table, Traction};
-use crate::error::Result;
-use crate::step::time_step::Limits;
+use crate::boundary::{
+    Conditions, Entry, Listed, Loaded, Prescribed, PrescribedVelocity, Table, Traction, Wall,
+};
+use crate::error::{Error, Result, Status};
+use crate::shape::WallTreatment;
+use crate::step::parts::Parts;
 
-use super::state::State;
-use super::{World, not_found, on};
-
-/// The conditions of a world beside its walls.
-#[derive(Debug, Default)]
-pub struct Conditions {
-    /// Gravity by a table [m/s²]; None: that of the options.
-    pub gravity: Option<Table>,
-    /// Prescribed velocities, in the order in which they were added.
-    pub prescribed: Vec<PrescribedEntry>,
-    /// Tractions, in the order in which they were added.
-    pub tractions: Vec<TractionEntry>,
-    next_prescribed: i64,
-    next_traction: i64,
-}
-
-/// A prescribed velocity with its id.
-#[derive(Clone, Debug)]
-pub struct PrescribedEntry {
-    /// Id, never reused.
-    pub id: i64,
-    /// The condition.
-    pub condition: PrescribedVelocity,
-    /// Velocity of the nodes at the end of the step [m/s].
-    pub target: [f64; 3],
-    /// Force on the material in the last step [N].
-    pub reaction: [f64; 3],
-}
-
-/// A traction with its id.
-#[derive(Clone, Debug)]
-pub struct TractionEntry {
-    /// Id, never reused.
-    pub id: i64,
-    /// The load.
-    pub load: Traction,
-    /// The particles that carry it.
-    pub surface: Surface,
-    /// Force on the body in the last step [N].
-    pub force: [f64; 3],
-}
-
-impl Conditions {
-    /// The last time at which a table changes something [s]; negative infinity if none does.
-    pub fn end(&self) -> f64 {
-        let tables = self.prescribed.iter().map(|entry| &entry.condition.velocity);
-        let tables = tables.chain(self.tractions.iter().map(|entry| &entry.load.traction));
-        tables.chain(&self.gravity).map(Table::end).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// Forgets the loads on a body that is removed.
-    pub fn remove_body(&mut self, body: i64) {
-        self.tractions.retain(|entry| entry.load.body != body);
-    }
-}
-
-impl<const D: usize> State<D> {
-    /// Gravity at a time [m/s²].
-    pub fn gravity(&self, time: f64) -> [f64; 3] {
-        self.conditions.gravity.as_ref().map_or(self.options.gravity, |table| table.at(time))
-    }
-
-    /// The stable time step [s], from the limits of particles and materials.
-    ///
-    /// What comes by tables counts with its largest value in the longest step that could be taken without it.
-    pub fn stable_dt(&self, limits: &Limits) -> f64 {
-        let options = &self.options;
-        let (now, free) = (self.time, limits.stable_dt(options, 0.0));
-        let gravity = match &self.conditions.gravity {
-            None => length(&options.gravity),
-            Some(table) => table.largest(now, now + 0.5 * free),
-        };
-        let mut dt = limits.stable_dt(options, gravity);
-        for entry in &self.conditions.prescribed {
-            let speed = entry.condition.velocity.largest(now, now + dt);
-            dt = dt.min(options.cfl * options.spacing / speed);
-        }
-        dt
-    }
-}
+use super::{World, on};
 
 impl World {
+    pub(crate) fn conditions(&self) -> &Conditions {
+        on!(&self, s => &s.conditions)
+    }
+
+    fn conditions_mut(&mut self) -> Result<&mut Conditions> {
+        self.check_alive()?;
+        Ok(on!(&mut self, s => &mut s.conditions))
+    }
+
+    fn entry<C: Listed>(&self, id: i64) -> Result<&Entry<C>> {
+        C::list(self.conditions()).get(id)
+    }
+
+    fn remove<C: Listed>(&mut self, id: i64) -> Result<()> {
+        C::list_mut(self.conditions_mut()?).remove(id)
+    }
+
     /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the options.
     pub fn set_gravity_table(&mut self, table: Option<Table>) -> Result<()> {
         self.check_alive()?;
         for gravity in table.iter().flat_map(Table::rows) {
             self.options().check_gravity(*gravity)?;
         }
-        on!(&mut self, s => s.conditions.gravity = table);
+        self.conditions_mut()?.gravity = table;
         Ok(())
     }
 
@@ -101,11 +41,33 @@ impl World {
     pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<()> {
         self.check_alive()?;
         self.options().check_gravity(gravity)?;
-        on!(&mut self, s => {
-            s.options.gravity = gravity;
-            s.conditions.gravity = None;
-        });
+        on!(&mut self, s => s.method.options.gravity = gravity);
+        self.conditions_mut()?.gravity = None;
         Ok(())
+    }
+
+    /// Adds a wall and gives its id.
+    pub fn add_wall(&mut self, wall: &Wall) -> Result<i64> {
+        self.check_alive()?;
+        wall.check(self.options().dimension)?;
+        on!(&mut self, s => {
+            s.check_wall(wall)?;
+            let id = s.conditions.walls.add(*wall);
+            s.walls_changed();
+            Ok(id)
+        })
+    }
+
+    /// Removes a wall.
+    pub fn remove_wall(&mut self, wall: i64) -> Result<()> {
+        self.remove::<Wall>(wall)?;
+        on!(&mut self, s => s.walls_changed());
+        Ok(())
+    }
+
+    /// Force of a wall on the material in the last step [N]; the force on the wall is the opposite.
+    pub fn wall_reaction(&self, wall: i64) -> Result<[f64; 3]> {
+        Ok(self.entry::<Wall>(wall)?.force)
     }
 
     /// Adds a prescribed velocity and gives its id.
@@ -114,28 +76,18 @@ impl World {
         condition.check(self.options().dimension)?;
         let components = condition.components; // what is free must not limit the step
         condition.velocity = condition.velocity.keeping(|a| components >> a & 1 == 1);
-        on!(&mut self, s => {
-            let id = s.conditions.next_prescribed;
-            s.conditions.next_prescribed += 1;
-            let (target, reaction) = (condition.velocity.at(s.time), [0.0; 3]);
-            s.conditions.prescribed.push(PrescribedEntry { id, condition, target, reaction });
-            Ok(id)
-        })
+        let target = condition.velocity.at(self.time());
+        Ok(self.conditions_mut()?.prescribed.add(Prescribed { condition, target }))
     }
 
     /// Removes a prescribed velocity.
     pub fn remove_prescribed_velocity(&mut self, id: i64) -> Result<()> {
-        self.check_alive()?;
-        on!(&mut self, s => {
-            let at = s.prescribed_position(id)?;
-            s.conditions.prescribed.remove(at);
-        });
-        Ok(())
+        self.remove::<Prescribed>(id)
     }
 
     /// Force of a prescribed velocity on the material in the last step [N].
     pub fn prescribed_velocity_reaction(&self, id: i64) -> Result<[f64; 3]> {
-        on!(&self, s => Ok(s.conditions.prescribed[s.prescribed_position(id)?].reaction))
+        Ok(self.entry::<Prescribed>(id)?.force)
     }
 
     /// Adds a traction and gives its id.
@@ -143,48 +95,61 @@ impl World {
         self.check_alive()?;
         load.check(self.options().dimension)?;
         on!(&mut self, s => {
-            let surface = s.surface_of(&load)?;
-            let id = s.conditions.next_traction;
-            s.conditions.next_traction += 1;
-            s.conditions.tractions.push(TractionEntry { id, load, surface, force: [0.0; 3] });
-            Ok(id)
+            let axisymmetric = s.method.options.axisymmetric;
+            let surface = s.with_surface(&load, axisymmetric)?;
+            s.freshness.loads_changed();
+            Ok(s.conditions.tractions.add(Loaded { load, surface, applied: [0.0; 3] }))
         })
     }
 
     /// Removes a traction.
     pub fn remove_traction(&mut self, id: i64) -> Result<()> {
-        self.check_alive()?;
-        on!(&mut self, s => {
-            let at = s.traction_position(id)?;
-            s.conditions.tractions.remove(at);
-        });
+        self.remove::<Loaded>(id)?;
+        on!(&mut self, s => s.freshness.loads_changed());
         Ok(())
     }
 
     /// Number of particles that carry a traction, their area [m²], and the force on the body in the last step [N].
     pub fn traction_force(&self, id: i64) -> Result<(usize, f64, [f64; 3])> {
-        on!(&self, s => {
-            let entry = &s.conditions.tractions[s.traction_position(id)?];
-            let surface = &entry.surface;
-            Ok((surface.ids.len(), surface.areas.iter().sum(), entry.force))
-        })
+        let entry = self.entry::<Loaded>(id)?;
+        let surface = &entry.condition.surface;
+        Ok((surface.ids.len(), surface.areas.iter().sum(), entry.force))
     }
 }
 
-impl<const D: usize> State<D> {
-    fn surface_of(&self, load: &Traction) -> Result<Surface> {
-        load.surface::<D>(self.body(load.body)?, self.options.axisymmetric)
+impl<const D: usize> Parts<D> {
+    fn with_surface(
+        &self,
+        load: &Traction,
+        axisymmetric: bool,
+    ) -> Result<crate::boundary::Surface> {
+        load.surface::<D>(self.body(load.body)?, axisymmetric)
     }
 
-    fn prescribed_position(&self, id: i64) -> Result<usize> {
-        let known = self.conditions.prescribed.iter().map(|entry| entry.id);
-        let found = known.clone().position(|known| known == id);
-        found.ok_or_else(|| not_found("prescribed velocity", id, known))
-    }
-
-    fn traction_position(&self, id: i64) -> Result<usize> {
-        let known = self.conditions.tractions.iter().map(|entry| entry.id);
-        let found = known.clone().position(|known| known == id);
-        found.ok_or_else(|| not_found("traction", id, known))
+    /// Refuses a wall that the shape functions can not be modified for.
+    fn check_wall(&self, wall: &Wall) -> Result<()> {
+        let options = &self.method.options;
+        if options.wall_treatment != WallTreatment::Modified {
+            return Ok(());
+        }
+        let unsupported = |text: String| Err(Error::new(Status::Unsupported, text));
+        let (h, origin) = (options.spacing, options.origin[wall.axis]);
+        let node = ((wall.position - origin) / h).round();
+        if ((wall.position - origin) / h - node).abs() > 1e-6 {
+            return unsupported(format!(
+                "with wall_treatment modified a wall stands on a node plane; {} is between two, the nearest is at {}",
+                wall.position,
+                origin + node * h
+            ));
+        }
+        let same =
+            |w: &&Entry<Wall>| (w.condition.axis, w.condition.side) == (wall.axis, wall.side);
+        match self.conditions.walls.iter().find(same) {
+            None => Ok(()),
+            Some(other) => unsupported(format!(
+                "with wall_treatment modified an axis has one wall on each side; wall {} stands at {} already: remove it first",
+                other.id, other.condition.position
+            )),
+        }
     }
 }

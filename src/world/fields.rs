@@ -1,10 +1,10 @@
 //! Access to particle fields by name.
 
 use crate::error::{Error, Result, Status};
-use crate::particles::FieldInfo;
+use crate::particles::{Body, FieldInfo};
+use crate::step::parts::Parts;
 
 use super::host_arrays::{Strided, StridedMut};
-use super::state::{Body, State};
 use super::{World, on};
 
 /// A field in storage order: component c of particle k at `data[c * stride + k]`.
@@ -52,7 +52,7 @@ fn fields_of(body: &Body, dimension: usize) -> Vec<(FieldInfo, usize)> {
     list
 }
 
-fn find<const D: usize>(state: &State<D>, body: i64, name: &str) -> Result<(FieldInfo, usize)> {
+fn find<const D: usize>(state: &Parts<D>, body: i64, name: &str) -> Result<(FieldInfo, usize)> {
     let fields = fields_of(state.body(body)?, D);
     let found = fields.iter().find(|(info, _)| info.name.to_bytes() == name.as_bytes());
     found.copied().ok_or_else(|| {
@@ -65,7 +65,7 @@ impl World {
     /// The fields of a body.
     pub fn fields(&self, body: i64) -> Result<Vec<FieldInfo>> {
         on!(&self, s => {
-            let fields = fields_of(s.body(body)?, s.options.dimension);
+            let fields = fields_of(s.body(body)?, s.method.options.dimension);
             Ok(fields.into_iter().map(|(info, _)| info).collect())
         })
     }
@@ -91,19 +91,21 @@ impl World {
 
     /// A field in storage order, to write. What is written is checked before the next step.
     pub fn field_data_mut(&mut self, body: i64, field: &str) -> Result<FieldSliceMut<'_>> {
+        self.field_view_mut(body, field)?;
+        self.views_closed();
+        self.field_view_mut(body, field)
+    }
+
+    /// The same for who writes later, and then calls [`World::views_closed`].
+    pub fn field_view_mut(&mut self, body: i64, field: &str) -> Result<FieldSliceMut<'_>> {
         self.check_alive()?;
         let info = self.field_info(body, field)?;
         if !info.writable {
             let text = format!("the field `{field}` can be read but not written");
             return Err(Error::new(Status::ReadOnly, text));
         }
-        self.host_wrote = true;
-        let moves = field != "body_force"; // which changes neither waves nor places
         on!(&mut self, s => {
-            if moves {
-                s.limits = None;
-                s.rescan = true;
-            }
+            s.freshness.field_opened(field);
             let (info, first) = find(s, body, field)?;
             let at = s.body_position(body)?;
             let particles = &mut s.bodies[at].particles;

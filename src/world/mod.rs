@@ -1,13 +1,12 @@
 //! A world owns a grid, bodies and walls, and steps them.
 //!
-//! [`World`] is the façade that the C ABI wraps; [`state::State`] is what the stages of a step work on, in two or three dimensions.
+//! [`World`] is the façade that the C ABI wraps; the parts of it, in two or three dimensions, stand in [`step::parts`](crate::step::parts).
 
 pub mod bodies;
 pub mod conditions;
 pub mod fields;
 pub mod host_arrays;
 pub mod queries;
-pub mod state;
 pub mod statics;
 
 pub use crate::step::{hooks, options};
@@ -15,28 +14,24 @@ pub use crate::step::{hooks, options};
 use std::sync::Arc;
 
 use crate::background::GridStats;
-use crate::boundary::Wall;
-use crate::context::{Context, LogLevel};
+use crate::boundary::registry::not_found;
+use crate::context::Context;
 use crate::error::{Error, Place, Result, Status};
+use crate::log::LogLevel;
 use crate::material::{Capsule, Material};
-use crate::particles::FieldInfo;
 use crate::particles::fields::NODE_FIELDS;
 use crate::particles::seeding::{Fill, Region};
-use crate::shape::WallTreatment;
+use crate::particles::{Body, FieldInfo};
 use crate::step;
-use crate::step::apply_tractions::apply_tractions;
-use crate::step::locate::locate;
-use crate::step::particles_to_grid::particles_to_grid;
-use crate::step::retry::back_to_start;
-use crate::step::time_step::{Limits, limits_of_state};
-use crate::step::update_grid::update_grid;
-use crate::step::update_stress::{Failure, Unreliable};
+use crate::step::integrate::{Done, Stop, integrate};
+use crate::step::parts::Parts;
+use crate::step::pass::Stopwatch;
+use crate::step::update_stress::{Failure, Unreliable, Wish};
 
 use hooks::{Hook, HookPoint};
 use host_arrays::ParticleArrays;
 use options::{Options, check_damping};
 use queries::Totals;
-use state::{State, Stopwatch, WallEntry};
 
 /// A host's step may exceed the stable one by this much: its own arithmetic.
 const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
@@ -44,20 +39,19 @@ const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
 /// Bodies, grid, walls and time.
 pub struct World {
     pub(crate) inner: Inner,
+    context: Arc<Context>,
     next_body: i64,
-    next_wall: i64,
     last_dt: f64,
-    host_wrote: bool,
     poisoned: bool,
     told_unreliable: bool,
 }
 
 pub(crate) enum Inner {
-    Two(Box<State<2>>),
-    Three(Box<State<3>>),
+    Two(Box<Parts<2>>),
+    Three(Box<Parts<3>>),
 }
 
-/// Evaluates an expression for the state, whatever its dimension.
+/// Evaluates an expression for the parts, whatever their dimension.
 macro_rules! on {
     (&$world:expr, $state:ident => $body:expr) => {
         match &$world.inner {
@@ -78,17 +72,16 @@ impl World {
     /// An empty world. Errors name the option that is wrong.
     pub fn new(context: &Arc<Context>, options: &Options) -> Result<World> {
         options.check()?;
-        let (context, options) = (context.clone(), options.clone());
+        let (isa, team, options) = (context.isa(), context.team(), options.clone());
         let inner = match options.dimension {
-            2 => Inner::Two(Box::new(State::new(context, options)?)),
-            _ => Inner::Three(Box::new(State::new(context, options)?)),
+            2 => Inner::Two(Box::new(Parts::new(options, isa, team)?)),
+            _ => Inner::Three(Box::new(Parts::new(options, isa, team)?)),
         };
         Ok(World {
             inner,
+            context: Arc::clone(context),
             next_body: 0,
-            next_wall: 0,
             last_dt: 0.0,
-            host_wrote: false,
             poisoned: false,
             told_unreliable: false,
         })
@@ -96,14 +89,14 @@ impl World {
 
     /// The options, with gravity and damping as they are now.
     pub fn options(&self) -> &Options {
-        on!(&self, s => &s.options)
+        on!(&self, s => &s.method.options)
     }
 
     /// Sets local non-viscous damping from the next step on.
     pub fn set_damping(&mut self, damping: f64) -> Result<()> {
         self.check_alive()?;
         check_damping(damping)?;
-        on!(&mut self, s => s.options.damping = damping);
+        on!(&mut self, s => s.method.options.damping = damping);
         Ok(())
     }
 
@@ -162,42 +155,6 @@ impl World {
         on!(&self, s => Ok(s.body(body)?.particles.len()))
     }
 
-    /// Adds a wall and gives its id.
-    pub fn add_wall(&mut self, wall: &Wall) -> Result<i64> {
-        self.check_alive()?;
-        wall.check(self.options().dimension)?;
-        on!(&self, s => s.check_wall(wall))?;
-        let id = self.next_wall;
-        self.next_wall += 1;
-        on!(&mut self, s => s.walls.push(WallEntry { id, wall: *wall, reaction: [0.0; 3] }));
-        self.walls_changed();
-        Ok(id)
-    }
-
-    /// Removes a wall.
-    pub fn remove_wall(&mut self, wall: i64) -> Result<()> {
-        self.check_alive()?;
-        on!(&mut self, s => {
-            let at = s.wall_position(wall)?;
-            s.walls.remove(at);
-        });
-        self.walls_changed();
-        Ok(())
-    }
-
-    /// Where walls modify shape functions, particles are sorted anew, and checked to stand between them.
-    fn walls_changed(&mut self) {
-        if self.options().wall_treatment == WallTreatment::Modified {
-            self.host_wrote = true;
-            on!(&mut self, s => s.particles_changed());
-        }
-    }
-
-    /// Force of a wall on the material in the last step [N]; the force on the wall is the opposite.
-    pub fn wall_reaction(&self, wall: i64) -> Result<[f64; 3]> {
-        on!(&self, s => Ok(s.walls[s.wall_position(wall)?].reaction))
-    }
-
     /// One step, of length `dt` [s] or the stable one; gives the length.
     ///
     /// Refused with [`Status::StepTooLarge`] if `dt` exceeds the stable step. If a material fails in the middle the world is
@@ -217,8 +174,7 @@ impl World {
             return Err(Error::invalid(format!("dt must be positive and finite [s], got {dt}")));
         }
         if dt > stable * STEP_TOLERANCE {
-            let mut place = on!(&self, s => s.place());
-            place.suggested_dt = Some(stable);
+            let place = Place { suggested_dt: Some(stable), ..self.place() };
             let text = format!(
                 "the time step {dt:e} s exceeds the stable one, {stable:e} s (cfl {}): nothing was done; \
                  take a step of at most that, or lahar_world_step_auto",
@@ -226,9 +182,7 @@ impl World {
             );
             return Err(Error::new(Status::StepTooLarge, text).at(place));
         }
-        let dt = self.commit(dt, automatic)?;
-        on!(&mut self, s => s.time += dt);
-        Ok(dt)
+        self.integrate(dt, automatic)
     }
 
     /// Steps until the time `until` [s], or `max_steps` steps. Gives the number of steps that were done, and the first error.
@@ -256,11 +210,11 @@ impl World {
             } else {
                 stable
             };
-            let dt = match self.commit(dt, true) {
-                Ok(dt) => dt,
+            match self.integrate(dt, true) {
+                Ok(dt) if dt == rest => on!(&mut self, s => s.clock.time = until),
+                Ok(_) => {}
                 Err(error) => return (steps, Err(error)),
-            };
-            on!(&mut self, s => s.time = if dt == rest { until } else { s.time + dt });
+            }
             steps += 1;
         }
         (steps, Ok(()))
@@ -269,141 +223,113 @@ impl World {
     /// Checks what the host wrote and gives the stable step [s].
     fn prepare(&mut self) -> Result<f64> {
         self.check_alive()?;
-        if self.host_wrote {
-            on!(&mut self, s => {
-                for body in &s.bodies {
-                    s.check_particles(body).map_err(|error| Error {
-                        status: Status::NonFiniteInput,
-                        ..error
-                    })?;
-                }
-            });
-            self.host_wrote = false;
-        }
-        on!(&mut self, s => if s.limits.is_none() {
-            s.limits = Some(limits_of_state(s)?);
+        let place = self.place();
+        on!(&mut self, s => {
+            if s.freshness.must_check() {
+                s.check_what_was_written().map_err(|error| Error {
+                    status: Status::NonFiniteInput,
+                    place: Place { step: place.step, time: place.time, ..error.place },
+                    ..error
+                })?;
+                s.freshness.was_checked();
+            }
+            let limits = s.limits()?;
+            s.freshness.limits_found(limits);
         });
         self.stable_dt()
     }
 
-    /// Makes a step of `dt` [s], or a smaller one if a material wants that, `shorter` allows it, and the host lets steps be repeated.
-    /// Gives the length of the step that was made.
-    fn commit(&mut self, mut dt: f64, shorter: bool) -> Result<f64> {
-        let retries = self.options().retries;
-        let mut left = if shorter { retries } else { 0 };
-        loop {
-            if self.time() + dt == self.time() {
-                return Err(Error::invalid(format!(
-                    "a step of {dt:e} s does not change the time, {} s: something is too fast or too stiff for the spacing, or a \
-                     material asks for smaller and smaller steps",
-                    self.time()
-                )));
+    /// Makes a step of `dt` [s], or a smaller one; gives the length of the step that was made.
+    fn integrate(&mut self, dt: f64, shorter: bool) -> Result<f64> {
+        match on!(&mut self, s => integrate(s, dt, shorter)) {
+            Ok(Done { dt, unreliable }) => {
+                self.log_unreliable_points(unreliable);
+                self.last_dt = dt;
+                Ok(dt)
             }
-            let result = self.attempt(dt);
-            let (wanted, why) = match result {
-                Ok(limits) if retries == 0 || limits.wanted_dt >= dt => {
-                    on!(&mut self, s => {
-                        s.limits = Some(limits);
-                        s.step_count += 1;
-                    });
-                    self.tell_of_unreliable_points();
-                    self.last_dt = dt;
-                    return Ok(dt);
+            Err(Stop::Failed(failure)) => {
+                let mut error = self.error_of(*failure);
+                self.poisoned = (error.status as i32) < 0;
+                if self.poisoned {
+                    error.message += "; the world is poisoned";
                 }
-                Ok(limits) => (limits.wanted_dt, None),
-                Err(failure) if retries > 0 && failure.is_of_a_point() => (0.5 * dt, Some(failure)),
-                Err(failure) => {
-                    let mut error = self.told(*failure);
-                    self.poisoned = (error.status as i32) < 0;
-                    if self.poisoned {
-                        error.message += "; the world is poisoned";
-                    }
-                    return Err(error);
-                }
-            };
-            on!(&mut self, s => back_to_start(s));
-            if left == 0 {
-                let why = why.map(|failure| self.told(*failure));
-                return Err(self.refused(dt, wanted, why));
+                Err(error)
             }
-            left -= 1;
-            dt = wanted;
+            Err(Stop::TakenBack { dt, wanted, failure, wish }) => {
+                let why = match failure {
+                    Some(failure) => self.error_of(*failure),
+                    None => self.wished(wish),
+                };
+                let text = format!(
+                    "the step of {dt:e} s was taken back, nothing was done: {}; take {wanted:e} s or less, or find the cause",
+                    why.message
+                );
+                let place = Place { suggested_dt: Some(wanted), ..why.place };
+                Err(Error::new(Status::SmallerStep, text).at(place))
+            }
         }
     }
 
-    fn attempt(&mut self, dt: f64) -> std::result::Result<Limits, Box<Failure>> {
-        on!(&mut self, s => {
-            let place = s.place();
-            let result = if s.parallel {
-                let context = s.context.clone();
-                context.install(|| step::step(&mut **s, dt))
-            } else {
-                step::step(&mut **s, dt)
-            };
-            result.map_err(|mut failure| {
-                let at = &mut failure.error.place;
-                (at.step, at.time) = (place.step, place.time);
-                failure
-            })
-        })
-    }
-
-    /// Says once in a world's life that a model answered with less accuracy than it promises.
-    fn tell_of_unreliable_points(&mut self) {
-        let Some(found) = on!(&self, s => s.unreliable).filter(|_| !self.told_unreliable) else {
+    /// Logs once in a world's life that a model answered with less accuracy than it promises.
+    fn log_unreliable_points(&mut self, found: Option<Unreliable>) {
+        let Some(found) = found.filter(|_| !self.told_unreliable) else {
             return;
         };
         self.told_unreliable = true;
-        on!(&self, s => {
-            let Unreliable { points, body, particle } = found;
-            let model = s.body(body).map_or("?", |b| b.material.model().name);
-            let text = format!(
-                "in step {} the model `{model}` answered for {points} points with less accuracy than it promises, first for particle \
-                 {particle} of body {body}; smaller steps may help; this is told once",
-                s.step_count - 1
-            );
-            s.context.log(LogLevel::Warning, &text);
-        });
+        let Unreliable { points, body, particle } = found;
+        let text = format!(
+            "in step {} the model `{}` answered for {points} points with less accuracy than it promises, first for particle \
+             {particle} of body {body}; smaller steps may help; this is told once",
+            self.step_count() - 1,
+            self.model_of(body)
+        );
+        self.context.log(LogLevel::Warning, &text);
     }
 
-    /// The error of a failure that counts; the call that failed is kept if the host asked for that.
-    fn told(&self, failure: Failure) -> Error {
+    /// Name of the model of a body.
+    fn model_of(&self, body: i64) -> &'static str {
+        on!(&self, s => s.body(body).map_or("?", |b| b.material.model().name))
+    }
+
+    /// A point asked for a smaller step than that which was made.
+    fn wished(&self, wish: Option<Wish>) -> Error {
+        let text = "a material asks for a smaller step";
+        let Some(Wish { factor, body, particle }) = wish else { return Error::invalid(text) };
+        let text = format!(
+            "{text}: `{}` for particle {particle} of body {body}, by the factor {factor:e}",
+            self.model_of(body)
+        );
+        let place = Place { body: Some(body), particle: Some(particle), ..self.place() };
+        Error::invalid(text).at(place)
+    }
+
+    /// The error of a failure that counts; the call that failed is written to a file if the host asked for that.
+    fn error_of(&self, failure: Failure) -> Error {
         let Failure { mut error, capsule } = failure;
         if let Some(capsule) = capsule {
-            error.message.push_str(&keep(on!(&self, s => &s.context), capsule));
+            error.message.push_str(&write_capsule(&self.context, capsule));
         }
         error
     }
 
-    /// A step that was taken back, and will not be repeated.
-    fn refused(&self, dt: f64, wanted: f64, why: Option<Error>) -> Error {
-        let why = why.unwrap_or_else(|| on!(&self, s => s.wished()));
-        let text = format!(
-            "the step of {dt:e} s was taken back, nothing was done: {}; take {wanted:e} s or less, or find the cause",
-            why.message
-        );
-        Error::new(Status::SmallerStep, text).at(Place { suggested_dt: Some(wanted), ..why.place })
+    /// Number and time of what happens now, for errors.
+    fn place(&self) -> Place {
+        on!(&self, s => s.clock.place())
     }
 
     /// The stable time step [s]; infinity without particles.
     pub fn stable_dt(&self) -> Result<f64> {
-        on!(&self, s => {
-            let limits = match s.limits {
-                Some(limits) => limits,
-                None => limits_of_state(s)?,
-            };
-            Ok(s.stable_dt(&limits))
-        })
+        on!(&self, s => s.stable_dt())
     }
 
     /// Time [s].
     pub fn time(&self) -> f64 {
-        on!(&self, s => s.time)
+        on!(&self, s => s.clock.time)
     }
 
     /// Number of steps.
     pub fn step_count(&self) -> i64 {
-        on!(&self, s => s.step_count)
+        on!(&self, s => s.clock.step)
     }
 
     /// Length of the last step [s]; 0 before the first.
@@ -434,61 +360,76 @@ impl World {
         })
     }
 
-    /// Whether particles are sorted and the grid is built.
-    pub fn is_fresh(&self) -> bool {
-        on!(&self, s => !s.regroup && !s.stale)
+    /// Whether all particles stand in blocks, so that only a step changes their order.
+    pub fn is_sorted(&self) -> bool {
+        on!(&self, s => s.freshness.is_grouped())
     }
 
-    /// Sorts particles that came or went into blocks, and maps mass and momentum to the grid.
+    /// Whether the grid is that of the last step, and nothing has been changed since that it should show.
+    pub fn is_fresh(&self) -> bool {
+        on!(&self, s => s.freshness.mapped().is_some())
+    }
+
+    /// Makes the grid show the particles and loads as they are: sorts particles that came, went or were
+    /// moved into blocks, and maps mass, momentum and force. Nothing is done if that is so already.
     pub fn refresh(&mut self) -> Result<()> {
-        on!(&mut self, s => if s.regroup || s.stale {
-            let context = s.context.clone();
-            context.install(|| {
-                locate(&mut **s)?;
-                particles_to_grid(&mut **s);
-                apply_tractions(&mut **s, 0.0);
-                update_grid(&mut **s, 0.0);
-                s.stale = false;
-                Ok(())
-            })
-        } else {
-            Ok(())
+        if self.is_fresh() {
+            return Ok(());
+        }
+        let place = self.place();
+        let context = Arc::clone(&self.context);
+        let mapped = context.install(|| on!(&mut self, s => step::map(s)));
+        mapped.map_err(|error| Error {
+            place: Place { step: place.step, time: place.time, ..error.place },
+            ..error
         })
+    }
+
+    /// Views for writing were closed: the grid does not show what was written through them.
+    pub fn views_closed(&mut self) {
+        on!(&mut self, s => s.freshness.fields_closed());
     }
 
     /// Sets a hook into the step, or takes it away.
     pub fn set_hook(&mut self, point: HookPoint, hook: Option<Hook>) {
-        on!(&mut self, s => s.set_hook(point, hook));
+        on!(&mut self, s => s.hooks.set(point, hook));
     }
 
     /// Sets who is told about the stages of every chunk, on the thread that works on it; a call per chunk and stage.
     pub fn set_stopwatch(&mut self, stopwatch: Option<Arc<Stopwatch>>) {
-        on!(&mut self, s => s.stopwatch = stopwatch);
+        on!(&mut self, s => s.method.stopwatch = stopwatch);
     }
 
     /// Numbers of blocks and nodes, and their memory.
     pub fn grid_stats(&self) -> GridStats {
-        on!(&self, s => s.grid_stats())
+        on!(&self, s => s.background.stats())
     }
 
     /// Integer coordinates of the active blocks; z is 0 in two dimensions.
     pub fn grid_blocks(&self) -> Vec<[i64; 3]> {
-        on!(&self, s => s.grid.order().iter().map(|slot| {
-            let mut out = [0; 3];
-            s.grid.keys()[*slot as usize].iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
-            out
-        }).collect())
+        on!(&self, s => {
+            let blocks = &s.background.blocks;
+            let keys = blocks.order().iter().map(|slot| blocks.keys()[*slot as usize]);
+            keys.map(|key| {
+                let mut out = [0; 3];
+                key.at.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
+                out
+            }).collect()
+        })
     }
 
     /// Number of the node with this integer index, if its block is active.
     pub fn grid_find_node(&self, index: [i64; 3]) -> Option<i64> {
-        on!(&self, s => s.grid.find_node(std::array::from_fn(|d| index[d])).map(|n| n as i64))
+        on!(&self, s => {
+            let index = std::array::from_fn(|d| index[d]);
+            s.background.blocks.find_node(0, index).map(|n| n as i64)
+        })
     }
 
     /// Integer index of the node with this number.
     pub fn grid_node_index(&self, node: i64) -> Option<[i64; 3]> {
         on!(&self, s => {
-            let index = s.grid.node_index(usize::try_from(node).ok()?)?;
+            let index = s.background.blocks.node_index(usize::try_from(node).ok()?)?;
             let mut out = [0; 3];
             out[..index.len()].copy_from_slice(&index);
             Some(out)
@@ -511,7 +452,7 @@ impl World {
     }
 }
 
-impl<const D: usize> State<D> {
+impl<const D: usize> Parts<D> {
     /// Place of a body among the bodies.
     pub fn body_position(&self, id: i64) -> Result<usize> {
         let found = self.bodies.iter().position(|b| b.id == id);
@@ -519,48 +460,13 @@ impl<const D: usize> State<D> {
     }
 
     /// The body with this id.
-    pub fn body(&self, id: i64) -> Result<&state::Body> {
+    pub fn body(&self, id: i64) -> Result<&Body> {
         Ok(&self.bodies[self.body_position(id)?])
-    }
-
-    /// Refuses a wall that the shape functions can not be modified for.
-    fn check_wall(&self, wall: &Wall) -> Result<()> {
-        if self.options.wall_treatment != WallTreatment::Modified {
-            return Ok(());
-        }
-        let (h, origin) = (self.options.spacing, self.grid.origin[wall.axis]);
-        let node = ((wall.position - origin) / h).round();
-        if ((wall.position - origin) / h - node).abs() > 1e-6 {
-            return Err(Error::new(
-                Status::Unsupported,
-                format!(
-                    "with wall_treatment modified a wall stands on a node plane; {} is between two, the nearest is at {}",
-                    wall.position,
-                    origin + node * h
-                ),
-            ));
-        }
-        let same = |w: &&WallEntry| (w.wall.axis, w.wall.side) == (wall.axis, wall.side);
-        if let Some(other) = self.walls.iter().find(same) {
-            return Err(Error::new(
-                Status::Unsupported,
-                format!(
-                    "with wall_treatment modified an axis has one wall on each side; wall {} stands at {} already: remove it first",
-                    other.id, other.wall.position
-                ),
-            ));
-        }
-        Ok(())
-    }
-
-    fn wall_position(&self, id: i64) -> Result<usize> {
-        let found = self.walls.iter().position(|w| w.id == id);
-        found.ok_or_else(|| not_found("wall", id, self.walls.iter().map(|w| w.id)))
     }
 }
 
 /// Writes the call at a point that failed where the host wants it, and says where; a file that can not be written is for the log.
-fn keep(context: &Context, mut capsule: Capsule) -> String {
+fn write_capsule(context: &Context, mut capsule: Capsule) -> String {
     let Some(folder) = context.capsule_folder() else { return String::new() };
     if let Some(plugin) = context.model(&capsule.model).ok().and_then(|m| context.plugin_of(m)) {
         capsule.plugin_version = plugin.version.into();
@@ -573,10 +479,4 @@ fn keep(context: &Context, mut capsule: Capsule) -> String {
             String::new()
         }
     }
-}
-
-fn not_found(what: &str, id: i64, known: impl Iterator<Item = i64>) -> Error {
-    let known: Vec<String> = known.take(24).map(|k| k.to_string()).collect();
-    let list = if known.is_empty() { "there is none".into() } else { known.join(", ") };
-    Error::new(Status::NotFound, format!("no {what} has the id {id} (known: {list})"))
 }

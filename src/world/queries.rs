@@ -1,11 +1,12 @@
 //! What a world tells: totals, grid, samples.
 
-use crate::background::GridStats;
+use crate::background::Background;
+use crate::background::space::FARTHEST;
 use crate::error::{Error, Result};
+use crate::particles::Body;
 use crate::particles::fields::NODE_FIELDS;
-use crate::step::locate::FARTHEST;
-
-use super::state::{Body, State};
+use crate::shape::stencil::at_point;
+use crate::step::parts::Parts;
 
 /// Sums over particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,7 +33,7 @@ pub struct Totals {
 const LEAF: usize = 4096;
 const SUMS: usize = 13;
 
-impl<const D: usize> State<D> {
+impl<const D: usize> Parts<D> {
     /// Totals of one body or of all. The order of the sums does not depend on the number of threads.
     pub fn totals(&self, body: Option<i64>) -> Totals {
         let mut sums = [0.0; SUMS];
@@ -64,7 +65,7 @@ impl<const D: usize> State<D> {
         x[..D].copy_from_slice(&p.get::<D>(layout.position, k));
         v[..D].copy_from_slice(&p.get::<D>(layout.velocity, k));
         let affine = self.affine_spin(body, k);
-        let g = self.gravity(self.time);
+        let g = self.gravity(self.clock.time);
         let cross = |a: usize, b: usize| m * (x[a] * v[b] - x[b] * v[a]);
         [
             m,
@@ -87,14 +88,14 @@ impl<const D: usize> State<D> {
     fn affine_spin(&self, body: &Body, k: usize) -> [f64; 3] {
         let (p, layout) = (&body.particles, body.particles.layout);
         let mut spin = [0.0; 3];
-        if !self.options.transfer.is_affine() {
+        if !self.method.options.transfer.is_affine() {
             return spin;
         }
-        let h2 = self.options.spacing.powi(2);
+        let h2 = self.method.options.spacing.powi(2);
         let sized = layout.body_force > layout.size;
         let size = if sized { p.get::<D>(layout.size, k) } else { [0.0; D] };
-        let at = self.space().at_point(p.get::<D>(layout.position, k), size);
-        let moment = at.map(|at| h2 * (self.kernels.moment)(at));
+        let at = at_point(&self.background.space, p.get::<D>(layout.position, k), size);
+        let moment = at.map(|at| h2 * (self.method.kernels.moment)(at));
         let c = |a: usize, b: usize| p.column(layout.affine + a * D + b)[k] * moment[b];
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if a < D && b < D {
@@ -104,15 +105,10 @@ impl<const D: usize> State<D> {
         spin
     }
 
-    /// Numbers and memory of grid and tiles.
-    pub fn grid_stats(&self) -> GridStats {
-        let stats = self.grid.stats();
-        GridStats { bytes: stats.bytes + self.tiles.bytes() as i64, ..stats }
-    }
-
     /// Value of a node field at an active node.
     pub fn node_value(&self, field: &str, node: i64, out: &mut [f64]) -> Result<()> {
-        let count = self.grid.node_count();
+        let Background { blocks, nodes, .. } = &self.background;
+        let count = blocks.node_count();
         let node = usize::try_from(node).ok().filter(|n| *n < count).ok_or_else(|| {
             Error::invalid(format!("node numbers go from 0 to {}, got {node}", count as i64 - 1))
         })?;
@@ -123,13 +119,13 @@ impl<const D: usize> State<D> {
                 "{field} has {components} components, room is for {n}"
             )));
         }
-        let node = self.grid.record(node);
-        let (r0, force) = (self.grid.velocity[node], self.grid.force[node]);
+        let node = blocks.record(node);
+        let (record, force) = (&nodes.velocity[node], &nodes.force[node]);
         match field {
-            "mass" => out[0] = r0[0],
-            "velocity" => out.copy_from_slice(&r0[1..=D]),
-            "force" => out.copy_from_slice(&force[1..=D]),
-            _ => (0..D).for_each(|a| out[a] = r0[0] * r0[a + 1]),
+            "mass" => out[0] = record.mass(),
+            "velocity" => (0..D).for_each(|a| out[a] = record.component(a)),
+            "force" => (0..D).for_each(|a| out[a] = force.component(a)),
+            _ => (0..D).for_each(|a| out[a] = record.mass() * record.component(a)),
         }
         Ok(())
     }
@@ -148,7 +144,7 @@ impl<const D: usize> State<D> {
             return Err(Error::invalid(format!("points must be finite [m], got {point:?}")));
         }
         out.fill(0.0);
-        let at = self.space().at_point(std::array::from_fn(|d| point[d]), [0.0; D]);
+        let at = at_point(&self.background.space, std::array::from_fn(|d| point[d]), [0.0; D]);
         if at.iter().any(|at| at.xi.abs() >= FARTHEST) {
             return Ok(false);
         }
@@ -157,11 +153,12 @@ impl<const D: usize> State<D> {
         let value = &mut value[..components];
         let mut sum = [0.0; 3];
         let mut failed = None;
-        (self.kernels.nodes_at)(&self.grid, at, &mut |node, w| {
+        let Background { blocks, nodes, .. } = &self.background;
+        (self.method.kernels.nodes_at)(blocks, 0, at, &mut |node, w| {
             if let Err(error) = self.node_value(field, node as i64, value) {
                 failed = Some(error);
             }
-            let wm = w * self.grid.velocity[self.grid.record(node)][0];
+            let wm = w * nodes.velocity[blocks.record(node)].mass();
             mass += wm;
             for (sum, value) in sum.iter_mut().zip(&*value) {
                 *sum += wm * value;

@@ -1,14 +1,11 @@
 //! Statics by dynamics: how far from equilibrium, steps until it is reached, and initial stresses.
 
-use crate::background::key::block_nodes;
+use crate::background::{Background, block_nodes, nodes_of};
 use crate::error::{Error, Result, Status};
 use crate::material::Kinematics;
-use crate::step::apply_boundaries::for_reached_nodes;
-use crate::step::apply_boundaries::prescribed::for_nodes_inside;
-use crate::step::time_step::limits_of_state;
+use crate::step::parts::Parts;
 
 use super::bodies::init_state;
-use super::state::State;
 use super::{World, on};
 
 /// Steps between two looks at the equilibrium in [`World::settle`].
@@ -67,10 +64,16 @@ pub struct Settled {
 }
 
 impl World {
-    /// How far the world is from equilibrium: energies of the particles, and the forces on the grid of the last step. Before the first step
-    /// and after bodies came or went the grid must be [refreshed](World::refresh).
-    pub fn equilibrium(&self) -> Result<Equilibrium> {
-        on!(&self, s => s.equilibrium(self.last_dt))
+    /// How far the world is from equilibrium: energies of the particles, and the forces on the grid, which is
+    /// that of the last step or, where something has been changed since, is [refreshed](World::refresh).
+    pub fn equilibrium(&mut self) -> Result<Equilibrium> {
+        self.refresh()?;
+        self.equilibrium_of_grid()
+    }
+
+    /// The same for a world that is [fresh](World::is_fresh).
+    pub fn equilibrium_of_grid(&self) -> Result<Equilibrium> {
+        on!(&self, s => s.equilibrium())
     }
 
     /// Steps of the stable length until the world is in equilibrium, or until steps or time have run out. Gives what was reached, and
@@ -86,13 +89,13 @@ impl World {
             let steps = STEPS_BETWEEN_CHECKS.min(criteria.max_steps - settled.steps);
             let (done, result) = self.advance(criteria.until.min(f64::MAX), steps);
             settled.steps += done;
-            let looked = result.and_then(|()| self.refresh()).and_then(|()| self.equilibrium());
+            let looked = result.and_then(|()| self.equilibrium());
             settled.equilibrium = match looked {
                 Ok(equilibrium) => equilibrium,
                 Err(error) => return (settled, Err(error)),
             };
             let now = settled.equilibrium;
-            let constant = on!(&self, s => s.conditions.end() <= s.time);
+            let constant = on!(&self, s => s.conditions.end() <= s.clock.time);
             settled.converged = constant
                 && settled.steps > 0
                 && now.kinetic_ratio <= criteria.kinetic_ratio
@@ -145,17 +148,13 @@ impl World {
             let at = s.body_position(body)?;
             let ground = s.level_ground(at, surface, unit_weight, k0)?;
             s.start_anew(at, Some(&ground))
-        })?;
-        self.host_wrote = true;
-        Ok(())
+        })
     }
 
     /// Lets the model of a body derive its state from the stresses anew, as when the body was added: what it remembered is lost.
     pub fn init_body_state(&mut self, body: i64) -> Result<()> {
         self.check_alive()?;
-        on!(&mut self, s => s.start_anew(s.body_position(body)?, None))?;
-        self.host_wrote = true;
-        Ok(())
+        on!(&mut self, s => s.start_anew(s.body_position(body)?, None))
     }
 }
 
@@ -169,12 +168,16 @@ struct Ground {
     k0: f64,
 }
 
-impl<const D: usize> State<D> {
-    fn equilibrium(&self, last_dt: f64) -> Result<Equilibrium> {
+impl<const D: usize> Parts<D> {
+    fn equilibrium(&self) -> Result<Equilibrium> {
+        let Some(mapped) = self.freshness.mapped() else {
+            return Err(Error::invalid(
+                "the grid does not show the particles as they are: refresh the world first",
+            ));
+        };
         let totals = self.totals(None);
         let stored = totals.strain_energy.abs().max(self.energy_of_stresses()?);
-        let [unbalanced_force, external_force] =
-            self.forces(self.gravity(self.time - 0.5 * last_dt));
+        let [unbalanced_force, external_force] = self.forces(self.gravity(mapped));
         Ok(Equilibrium {
             kinetic_energy: totals.kinetic_energy,
             strain_energy: totals.strain_energy,
@@ -187,10 +190,7 @@ impl<const D: usize> State<D> {
 
     /// Σ V σ:σ / (2 ρ c²) with the largest wave speed c: about the elastic energy of the stresses, initial ones included [J].
     fn energy_of_stresses(&self) -> Result<f64> {
-        let limits = match self.limits {
-            Some(limits) => limits,
-            None => limits_of_state(self)?,
-        };
+        let limits = self.limits()?;
         let mut sum = 0.0;
         for body in &self.bodies {
             let (p, layout) = (&body.particles, body.particles.layout);
@@ -210,30 +210,29 @@ impl<const D: usize> State<D> {
     /// What supports take up is told from the force alone, as on a node at rest: a wall leaves of the force what it would leave of a
     /// velocity.
     fn forces(&self, gravity: [f64; 3]) -> [f64; 2] {
-        let loads = self.conditions.tractions.iter().map(|entry| size(&entry.force));
+        let loads = self.conditions.tractions.iter().map(|entry| size(&entry.condition.applied));
         let (mut unbalanced, mut external, mut walls) = (0.0, loads.sum::<f64>(), 0.0);
-        let space = self.space();
-        for slot in self.grid.order() {
-            let key = &self.grid.keys()[*slot as usize];
-            let first = *slot as usize * block_nodes(D);
-            let nodes = first..first + block_nodes(D);
+        let Background { space, blocks, nodes, .. } = &self.background;
+        for slot in blocks.owned() {
+            let key = &blocks.keys()[slot];
             let mut force = [[0.0; D]; MOST_NODES];
-            for (n, node) in nodes.enumerate() {
-                let (m, f) = (self.grid.velocity[node][0], self.grid.force[node]);
-                force[n] = std::array::from_fn(|a| f[a + 1] + m * gravity[a]);
+            for (n, node) in nodes_of::<D>(slot).enumerate() {
+                let (m, f) = (nodes.velocity[node].mass(), &nodes.force[node]);
+                force[n] = std::array::from_fn(|a| f.component(a) + m * gravity[a]);
                 external += m * size(&gravity);
             }
-            for entry in &self.conditions.prescribed {
-                for_nodes_inside(&entry.condition, &space, key, |n| {
-                    let held = |a: usize| entry.condition.holds(a);
+            for entry in self.conditions.prescribed.iter() {
+                let condition = &entry.condition.condition;
+                condition.for_nodes_inside(space, key, |n| {
+                    let held = |a: usize| condition.holds(a);
                     let free = std::array::from_fn(|a| if held(a) { 0.0 } else { force[n][a] });
                     external += difference(&force[n], &free);
                     force[n] = free;
                 });
             }
-            for entry in &self.walls {
-                for_reached_nodes(&entry.wall, &space, key, |n| {
-                    let free = entry.wall.constrain(force[n]);
+            for entry in self.conditions.walls.iter() {
+                entry.condition.reached(space, key, |n| {
+                    let free = entry.condition.constrain(force[n]);
                     walls += difference(&force[n], &free);
                     force[n] = free;
                 });
@@ -250,13 +249,13 @@ impl<const D: usize> State<D> {
         unit_weight: Option<f64>,
         k0: f64,
     ) -> Result<Ground> {
-        let gravity = self.gravity(self.time);
+        let gravity = self.gravity(self.clock.time);
         let pulling: Vec<usize> = (0..D).filter(|a| gravity[*a] != 0.0).collect();
         let [axis] = pulling[..] else {
             return Err(Error::invalid(format!(
                 "a K0 stress needs gravity along one axis at the present time, {} s, got {:?} m/s^2: set gravity, or the \
                  table of gravity, first",
-                self.time,
+                self.clock.time,
                 &gravity[..D]
             )));
         };
@@ -313,15 +312,13 @@ impl<const D: usize> State<D> {
         if let Some(ground) = ground {
             self.set_ground_stress(at, ground);
         }
-        if let Err(error) = init_state(&mut self.bodies[at], self.options.spacing) {
+        if let Err(error) = init_state(&mut self.bodies[at], self.method.options.spacing) {
             for ((c, n), old) in ranges.into_iter().zip(old) {
                 self.bodies[at].particles.columns_mut(c, n).copy_from_slice(&old);
             }
             return Err(Error { status: Status::InvalidArgument, ..error });
         }
-        self.limits = None;
-        self.regroup = true; // the grid shows forces of the old stresses
-        self.rescan = true;
+        self.freshness.stresses_set();
         Ok(())
     }
 }

@@ -31,10 +31,12 @@ const H: f64 = 0.1;
 /// those of the orders, "-" where the combination is refused.
 type Sums = BTreeMap<String, BTreeMap<String, String>>;
 
-/// Computes the sums, and compares with the file or writes it.
-pub fn run(write: bool) -> std::result::Result<(), String> {
-    setup::run(setup::Need::Tests)?;
-    process::cargo(&["build", "--release", "--workspace"])?;
+/// Computes the sums, and compares with the file or writes it; builds what is needed unless `built`.
+pub fn run(write: bool, built: bool) -> std::result::Result<(), String> {
+    if !built {
+        setup::run(setup::Need::Tests)?;
+        process::cargo(&["build", "--release", "--workspace"])?;
+    }
     let found = all_sums()?;
     let path = process::root().join(FILE);
     if write {

@@ -26,7 +26,7 @@ pub fn ci() -> Result<(), String> {
         "warnings",
     ])?;
     headers(true)?;
-    bits::run(false)?;
+    bits::run(false, false)?;
     instructions::run(false)?;
     test()
 }

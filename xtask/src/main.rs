@@ -52,6 +52,9 @@ enum Task {
         /// Writes the sums as they are now
         #[arg(long)]
         write: bool,
+        /// The workspace is built already
+        #[arg(long)]
+        built: bool,
     },
     /// Measures nanoseconds per particle and step
     Bench(bench::Arguments),
@@ -67,7 +70,7 @@ fn main() -> ExitCode {
         Task::Ci => checks::ci(),
         Task::Headers { check } => checks::headers(check),
         Task::Instructions { write } => instructions::run(write),
-        Task::Bits { write } => bits::run(write),
+        Task::Bits { write, built } => bits::run(write, built),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Verify(arguments) => verify::run(&arguments),
     };

@@ -2,106 +2,71 @@
 //! are prescribed, and what that changes is the reaction. Blocks outside the box are passed over. The nodes of a box are few beside
 //! the particles, so that one thread does it, in the order of the blocks.
 
-use std::ops::Range;
-
-use crate::background::key::block_nodes;
-use crate::background::{EDGE, Key, Lanes};
-use crate::boundary::PrescribedVelocity;
-use crate::world::state::{Space, State};
-
-use super::ROUND_OFF;
+use super::Undamped;
+use crate::background::{Background, Record, block_nodes};
+use crate::boundary::{List, Prescribed, PrescribedVelocity};
 
 /// Prescribes v_i and Δv_i, and sums the forces on the material.
-pub fn prescribe<const D: usize>(world: &mut State<D>, dt: f64) {
-    let end = world.time + dt;
-    let (gravity, damped) = (world.gravity(world.time + 0.5 * dt), world.options.damping > 0.0);
-    for n in 0..world.conditions.prescribed.len() {
-        let target = world.conditions.prescribed[n].condition.velocity.at(end);
+pub fn prescribe<const D: usize>(
+    background: &mut Background<D>,
+    conditions: &mut List<Prescribed>,
+    (time, dt): (f64, f64),
+    undamped: Undamped,
+) {
+    for entry in conditions.iter_mut() {
+        let target = entry.condition.condition.velocity.at(time + dt);
         let mut impulse = [0.0; 3];
-        for_each_prescribed(world, n, |a, r0, r1, force| {
-            let (mass, change) = (r0[0], target[a] - r0[a + 1]);
-            // once for each component of a node, whatever number of conditions hold it: lane 0 of R1, which is free, remembers
-            let seen = f64::from(1 << a);
-            if damped && r0[a + 1] != 0.0 && r1[0] as i32 >> a & 1 == 0 {
-                r1[0] += seen;
-                impulse[a] -= dt * (force[a + 1] + mass * gravity[a]) - mass * r1[a + 1];
+        for_each_held(background, &entry.condition.condition, |a, velocity, increment, force| {
+            let (mass, before) = (velocity.mass(), velocity.component(a));
+            let change = target[a] - before;
+            // once for each component of a node, whatever number of conditions hold it
+            if let Some((gravity, dt)) = undamped
+                && before != 0.0
+                && !increment.is_held(a)
+            {
+                increment.hold(a);
+                let whole = dt * (force.component(a) + mass * gravity[a]);
+                impulse[a] -= whole - mass * increment.component(a);
             }
-            r0[a + 1] = target[a]; // [CND-3]
-            r1[a + 1] += change;
+            *velocity.component_mut(a) = target[a]; // [CND-3]
+            *increment.component_mut(a) += change;
             impulse[a] += mass * change;
         });
-        let entry = &mut world.conditions.prescribed[n];
-        entry.target = target;
-        entry.reaction = impulse.map(|impulse| impulse / dt);
+        entry.condition.target = target;
+        entry.force = impulse.map(|impulse| impulse / dt);
     }
 }
 
-/// Prescribes the velocities of the second scatter (R1).
-pub fn prescribe_again<const D: usize>(world: &mut State<D>) {
-    for n in 0..world.conditions.prescribed.len() {
-        let target = world.conditions.prescribed[n].target;
-        for_each_prescribed(world, n, |a, _, r1, _| r1[a + 1] = target[a]);
-    }
-}
-
-/// Calls `visit` with every prescribed component of condition `n` and the records R0, R1 and force of its node.
-fn for_each_prescribed<const D: usize>(
-    world: &mut State<D>,
-    n: usize,
-    mut visit: impl FnMut(usize, &mut Lanes, &mut Lanes, &Lanes),
+/// Prescribes the velocities that stand in the increments.
+pub fn prescribe_again<const D: usize>(
+    background: &mut Background<D>,
+    conditions: &List<Prescribed>,
 ) {
-    let space = world.space();
-    let State { grid, conditions, .. } = world;
-    let condition = &conditions.prescribed[n].condition;
-    for place in 0..grid.order().len() {
-        let slot = grid.order()[place] as usize;
-        let key = grid.keys()[slot];
+    for Prescribed { condition, target } in conditions.iter().map(|entry| &entry.condition) {
+        for_each_held(background, condition, |a, _, increment, _| {
+            *increment.component_mut(a) = target[a];
+        });
+    }
+}
+
+/// Calls `visit` with every component that a condition holds, and the velocity, increment and force of its
+/// node.
+fn for_each_held<const D: usize>(
+    background: &mut Background<D>,
+    condition: &PrescribedVelocity,
+    mut visit: impl FnMut(usize, &mut Record, &mut Record, &Record),
+) {
+    let Background { space, blocks, nodes, .. } = background;
+    for slot in blocks.owned() {
         let first = slot * block_nodes(D);
-        for_nodes_inside(condition, &space, &key, |node| {
+        condition.for_nodes_inside(space, &blocks.keys()[slot], |node| {
             let node = first + node;
-            if grid.velocity[node][0] > 0.0 {
+            if nodes.velocity[node].mass() > 0.0 {
                 for a in (0..D).filter(|a| condition.holds(*a)) {
-                    let (r0, r1) = (&mut grid.velocity[node], &mut grid.increment[node]);
-                    visit(a, r0, r1, &grid.force[node]);
+                    let (v, dv) = (&mut nodes.velocity[node], &mut nodes.increment[node]);
+                    visit(a, v, dv, &nodes.force[node]);
                 }
             }
         });
     }
-}
-
-/// Calls `visit` with the places in block `key` of the nodes inside the box of a condition.
-pub fn for_nodes_inside<const D: usize>(
-    condition: &PrescribedVelocity,
-    space: &Space<D>,
-    key: &Key<D>,
-    mut visit: impl FnMut(usize),
-) {
-    let mut layers: [Range<usize>; D] = std::array::from_fn(|_| 0..0);
-    for d in 0..D {
-        layers[d] = layers_inside(condition, space, key, d);
-        if layers[d].is_empty() {
-            return;
-        }
-    }
-    for node in 0..block_nodes(D) {
-        let layer = |d: usize| node / EDGE.pow((D - 1 - d) as u32) % EDGE;
-        if (0..D).all(|d| layers[d].contains(&layer(d))) {
-            visit(node);
-        }
-    }
-}
-
-/// Layers of nodes of block `key`, along axis d, that are inside the box.
-fn layers_inside<const D: usize>(
-    condition: &PrescribedVelocity,
-    space: &Space<D>,
-    key: &Key<D>,
-    d: usize,
-) -> Range<usize> {
-    let lowest = f64::from(key[d]) * EDGE as f64;
-    let units = |x: f64| (x - space.origin[d]) * space.inverse;
-    let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
-    let first = (units(condition.region.min[d]) - ROUND_OFF).ceil() - lowest;
-    let last = (units(condition.region.max[d]) + ROUND_OFF).floor() - lowest;
-    clamp(first)..clamp(last + 1.0)
 }

@@ -1,12 +1,13 @@
 //! The plan that sorts all particles by block (Morton order) and cell, with a stable counting sort.
 
-use super::{Plan, SORTING, place_inside};
+use super::{Near, Plan, SORTING, place_inside};
 use crate::background::index::Index;
 use crate::background::key::{block_nodes, morton_order};
 use crate::background::{Key, NONE, Run};
 use crate::error::Result;
 use crate::memory::{refill, reserve};
-use crate::world::state::State;
+use crate::particles::Body;
+use crate::step::parts::particle_count;
 
 /// Buffers of the full sort.
 #[derive(Debug, Default)]
@@ -24,30 +25,34 @@ pub struct Sorter<const D: usize> {
 }
 
 /// Plans to sort all bodies. An error names a particle that is outside the grid.
-pub fn plan_sort<const D: usize>(
-    world: &State<D>,
+pub(super) fn plan_sort<const D: usize>(
+    bodies: &[Body],
+    near: Near<'_, D>,
     sorter: &mut Sorter<D>,
     plan: &mut Plan<D>,
 ) -> Result<()> {
-    plan.clear(world)?;
+    plan.clear(bodies)?;
     plan.blocks_change = true;
-    number_blocks(world, sorter)?;
+    number_blocks(bodies, near, sorter)?;
     rank_owners(sorter)?;
-    sort_bodies(world, sorter, plan)
+    sort_bodies(bodies, sorter, plan)
 }
 
 /// Numbers the blocks in the order in which particles meet them; `slot` becomes number × cells of a block + cell.
-fn number_blocks<const D: usize>(world: &State<D>, sorter: &mut Sorter<D>) -> Result<()> {
-    let space = world.space();
+fn number_blocks<const D: usize>(
+    bodies: &[Body],
+    near: Near<'_, D>,
+    sorter: &mut Sorter<D>,
+) -> Result<()> {
     let cells = block_nodes(D) as u32;
     sorter.slot.clear();
     sorter.number.clear();
     sorter.owners.clear();
-    reserve(&mut sorter.slot, world.particle_count(), SORTING)?;
+    reserve(&mut sorter.slot, particle_count(bodies), SORTING)?;
     let mut last: Option<(Key<D>, u32)> = None;
-    for body in &world.bodies {
+    for body in bodies {
         for k in 0..body.particles.len() {
-            let (key, cell) = place_inside(world, body, &space, k)?;
+            let (key, cell) = place_inside(near, body, k)?;
             let number = match last {
                 Some((same, number)) if same == key => number,
                 _ => number_of(sorter, &key)?,
@@ -90,14 +95,14 @@ fn rank_owners<const D: usize>(sorter: &mut Sorter<D>) -> Result<()> {
 
 /// Sorts each body by block and cell. Particles of one cell keep their order.
 fn sort_bodies<const D: usize>(
-    world: &State<D>,
+    bodies: &[Body],
     sorter: &mut Sorter<D>,
     plan: &mut Plan<D>,
 ) -> Result<()> {
     let cells = block_nodes(D) as u32;
     let Sorter { slot, order, count, owners, sorted, rank, .. } = sorter;
     let mut start = 0;
-    for (b, body) in world.bodies.iter().enumerate() {
+    for (b, body) in bodies.iter().enumerate() {
         let n = body.particles.len();
         let slots = &mut slot[start..start + n];
         start += n;

@@ -3,14 +3,14 @@
 //! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
 //! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
 
-use super::{Plan, SORTING, place_inside};
+use super::{Near, Plan, SORTING, place_inside};
 use crate::background::index::Index;
 use crate::background::key::morton_order;
-use crate::background::{Key, NONE, Run};
+use crate::background::{Blocks, Key, NONE, Run};
 use crate::error::Result;
 use crate::memory::{refill, reserve};
-use crate::particles::{Span, in_order};
-use crate::world::state::{Body, Space, State};
+use crate::particles::{Body, Span, in_order};
+use crate::step::parts::particle_count;
 
 /// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.
 #[derive(Debug, Default)]
@@ -42,33 +42,34 @@ pub struct Regrouper<const D: usize> {
 
 /// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles did;
 /// an error names a particle that is outside the grid.
-pub fn plan_moves<const D: usize>(
-    world: &State<D>,
+pub(super) fn plan_moves<const D: usize>(
+    bodies: &[Body],
+    blocks: &Blocks<D>,
+    near: Near<'_, D>,
     buffers: &mut Regrouper<D>,
     plan: &mut Plan<D>,
 ) -> Result<bool> {
-    let most = world.particle_count() / 2;
-    plan.clear(world)?;
-    let slots = world.grid.keys().len();
+    let most = particle_count(bodies) / 2;
+    plan.clear(bodies)?;
+    let slots = blocks.keys().len();
     if buffers.run_of.len() != slots {
         refill(&mut buffers.run_of, slots, SORTING)?;
         buffers.run_of.resize(slots, NONE);
     }
-    let space = world.space();
-    for (b, body) in world.bodies.iter().enumerate() {
+    for (b, body) in bodies.iter().enumerate() {
         for (r, run) in body.runs.iter().enumerate() {
             buffers.run_of[run.block as usize] = r as u32;
         }
-        let found = find_movers(world, body, &space, buffers, most);
+        let found = find_movers(body, blocks, near, buffers, most);
         for run in &body.runs {
             buffers.run_of[run.block as usize] = NONE;
         }
         if !found? {
             return Ok(false);
         }
-        order_runs(world, body, buffers)?;
+        order_runs(body, blocks, buffers)?;
         sort_arrivals(buffers)?;
-        lay_out(world, b, buffers, plan)?;
+        lay_out((b, body), blocks, buffers, plan)?;
         fill_runs(buffers, plan)?;
         plan.end_body();
         if plan.moves.from.len() > most {
@@ -80,20 +81,20 @@ pub fn plan_moves<const D: usize>(
 
 /// Lists those who left their block, with the run that they go to. False if there are more than `most`.
 fn find_movers<const D: usize>(
-    world: &State<D>,
     body: &Body,
-    space: &Space<D>,
+    blocks: &Blocks<D>,
+    near: Near<'_, D>,
     buffers: &mut Regrouper<D>,
     most: usize,
 ) -> Result<bool> {
-    let grid = &world.grid;
     buffers.new_keys.clear();
     buffers.new_index.clear();
     for list in [&mut buffers.movers, &mut buffers.targets] {
         refill(list, body.particles.len() / 8, SORTING)?;
     }
     refill(&mut buffers.first_mover, body.runs.len() + 1, SORTING)?;
-    let (mut run, mut key) = (Run { block: 0, body: 0, first: 0, end: 0 }, [0; D]);
+    let (mut run, mut key) =
+        (Run { block: 0, body: 0, first: 0, end: 0 }, Key { layer: body.layer, at: [0; D] });
     for (w, word) in body.particles.moved.iter().enumerate() {
         let mut bits = *word;
         while bits != 0 {
@@ -101,12 +102,12 @@ fn find_movers<const D: usize>(
             bits &= bits - 1;
             while run.end <= k {
                 run = body.runs[buffers.first_mover.len()];
-                key = grid.keys()[run.block as usize];
+                key = blocks.keys()[run.block as usize];
                 buffers.first_mover.push(buffers.movers.len() as u32);
             }
-            let (new, _) = place_inside(world, body, space, k as usize)?;
+            let (new, _) = place_inside(near, body, k as usize)?;
             if new != key {
-                let slot = grid.find_near(run.block, &new);
+                let slot = blocks.find_near(run.block, &new);
                 let known = slot.map_or(NONE, |slot| buffers.run_of[slot as usize]);
                 let target =
                     if known == NONE { new_run(buffers, body.runs.len(), new)? } else { known };
@@ -139,8 +140,8 @@ fn new_run<const D: usize>(buffers: &mut Regrouper<D>, runs: usize, key: Key<D>)
 
 /// Counts the particles of each run after the moves, and puts the new runs in Morton order among the others.
 fn order_runs<const D: usize>(
-    world: &State<D>,
     body: &Body,
+    blocks: &Blocks<D>,
     buffers: &mut Regrouper<D>,
 ) -> Result<()> {
     let Regrouper { targets, first_mover, new_keys, new_runs, count, sequence, .. } = buffers;
@@ -155,7 +156,7 @@ fn order_runs<const D: usize>(
     for target in targets {
         count[*target as usize] += 1;
     }
-    let keys = world.grid.keys();
+    let keys = blocks.keys();
     let key = |r: u32| match body.runs.get(r as usize) {
         Some(run) => &keys[run.block as usize],
         None => &new_keys[r as usize - old],
@@ -197,13 +198,13 @@ fn sort_arrivals<const D: usize>(buffers: &mut Regrouper<D>) -> Result<()> {
 
 /// Gives every run its new range.
 fn lay_out<const D: usize>(
-    world: &State<D>,
-    b: usize,
+    (b, body): (usize, &Body),
+    blocks: &Blocks<D>,
     buffers: &mut Regrouper<D>,
     plan: &mut Plan<D>,
 ) -> Result<()> {
     let Regrouper { new_keys, count, sequence, spans, .. } = buffers;
-    let (runs, keys) = (&world.bodies[b].runs, world.grid.keys());
+    let (runs, keys) = (&body.runs, blocks.keys());
     refill(spans, sequence.len() + 1, SORTING)?;
     let (mut last, mut first) = (0, 0);
     for r in sequence.iter().map(|r| *r as usize) {

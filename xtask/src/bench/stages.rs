@@ -4,9 +4,9 @@
 //! thread; their part is divided as the threads together divide theirs between the three.
 
 use lahar::error::Result;
+use lahar::step::pass::ChunkStage;
 use lahar::world::World;
 use lahar::world::hooks::HookPoint;
-use lahar::world::state::ChunkStage;
 use serde_json::{Map, Value};
 use std::cell::Cell;
 use std::sync::Arc;
