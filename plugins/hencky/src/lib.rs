@@ -1,29 +1,16 @@
 //! Hencky elasticity: the Kirchhoff stress J σ = λ tr(ε) I + 2 μ ε of the logarithmic strain ε = ½ ln b, b = F Fᵀ.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text, principal,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, State, Updated, principal,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.hencky",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<Hencky>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.hencky", [Hencky]);
 
 /// `n` points for a bench, deformed by tens of per cent, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -5,27 +5,14 @@
 //! at the end and solved for it.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, Updated, c_text, elastic,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, Updated, elastic,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.ideal_gas",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<IdealGas>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.ideal_gas", [IdealGas]);
 
 /// `n` points for a bench: air under compression and shear, different in each point. Made for steps of 1e-4 s.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -8,29 +8,16 @@
 mod flow;
 
 use flow::{Flow, Solution, Step};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, Transfer, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
+    Transfer,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.johnson_cook",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<JohnsonCook>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.johnson_cook", [JohnsonCook]);
 
 /// `n` points for a bench, copper in plastic flow at rates of 1e4 per second if a step takes 1e-7 s, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -1,28 +1,15 @@
 //! Isotropic linear elasticity in rate form: Δσ = λ tr(Δε) I + 2 G Δε on the objectively rotated stress.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::tensor::{is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, State, Updated,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.linear_elastic",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<LinearElastic>(), ModelTable::of::<LinearElasticGreenNaghdi>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.linear_elastic", [LinearElastic, LinearElasticGreenNaghdi]);
 
 /// `n` points for a bench, strained and stressed, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -7,31 +7,18 @@
 mod returning;
 mod surface;
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, Transfer, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
+    Transfer,
 };
 use returning::Material;
 use std::ffi::CStr;
 use surface::Surface;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.matsuoka_nakai",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<MatsuokaNakai>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.matsuoka_nakai", [MatsuokaNakai]);
 
 /// `n` points for a bench: sheared under pressure, all of them in plastic flow, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -10,28 +10,15 @@ mod ellipse;
 mod swelling;
 
 use ellipse::{Ellipse, End, Step};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, Transfer, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
+    Transfer,
 };
 use std::ffi::CStr;
 use swelling::{SpecificVolume, Swelling};
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.modified_cam_clay",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<ModifiedCamClay>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.modified_cam_clay", [ModifiedCamClay]);
 
 /// `n` points for a bench: normally consolidated and sheared, all of them in plastic flow, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

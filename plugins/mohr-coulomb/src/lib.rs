@@ -10,31 +10,18 @@ mod planes;
 mod strength;
 
 use integrate::{Material, Step};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, lame, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, Transfer, c_text, gap,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
+    Transfer, gap,
 };
 use planes::Elasticity;
 use std::ffi::CStr;
 use strength::{Angles, Law, Softening, Strength};
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.mohr_coulomb",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<MohrCoulomb>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.mohr_coulomb", [MohrCoulomb]);
 
 /// `n` points for a bench: sheared under pressure, all of them in plastic flow, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

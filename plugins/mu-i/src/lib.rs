@@ -6,28 +6,15 @@
 //! step is a quadratic equation for τ.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::lame;
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Transfer, Updated, c_text, elastic,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, State, Transfer, Updated, elastic,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.mu_i",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<MuI>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.mu_i", [MuI]);
 
 /// `n` points for a bench: sheared under pressure, all of them in flow, different in each point. Made for steps of 1e-4 s.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -1,29 +1,16 @@
 //! Compressible neo-Hookean elasticity: σ = [μ (b − I) + λ ln J I] / J with b = F Fᵀ, J = det F.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::lame;
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{contract, determinant, deviator, is_finite, left_cauchy_green, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Updated, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, State, Updated,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.neo_hookean",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<NeoHookean>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.neo_hookean", [NeoHookean]);
 
 /// `n` points for a bench, deformed by tens of per cent, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -9,25 +9,10 @@ mod tait_water;
 pub use tait_water::TaitWater;
 
 use fluid::{EquationOfState, Fluid, Viscous};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
-use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, State, c_text,
-};
+use lahar_plugin::{Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, State};
 use std::ffi::CStr;
 
-/// The plugin with both models.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.newtonian",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<Newtonian>(), ModelTable::of::<TaitWater>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the models statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.newtonian", [Newtonian, TaitWater]);
 
 /// `n` points for a bench: a viscous fluid in shear under pressure, different in each point; Tait's equation with the
 /// given exponent. Made for steps of 1e-4 s.

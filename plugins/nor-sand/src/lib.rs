@@ -11,28 +11,15 @@ mod law;
 
 use dual::Dual;
 use integrate::{LEAST_IMAGE, Sand};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, PointStatus,
-    State, Transfer, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
+    Transfer,
 };
 use law::{Elasticity, Law};
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.nor_sand",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<NorSand>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.nor_sand", [NorSand]);
 
 /// `n` points for a bench: sheared under pressure, all of them in plastic flow, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {

@@ -2,8 +2,8 @@
 //!
 //! A model is a type that implements [`Model`]: its constants describe it, `new` makes an instance from parameter
 //! values and `update` advances a [`Batch`] of points. [`ModelTable::of`] turns the type into the static table of the
-//! plugin ABI, a static [`Plugin`] lists the tables, and [`export_plugin!`], in a thin `cdylib` of its own, writes the
-//! one symbol that the engine looks for. A model needs no `unsafe`.
+//! plugin ABI, a static [`Plugin`], which [`plugin!`] writes, lists the tables, and [`export_plugin!`], in a thin
+//! `cdylib` of its own, writes the one symbol that the engine looks for. A model needs no `unsafe`.
 //!
 //! Conventions of all arrays: SI or any other consistent units; tension positive; symmetric tensors are the tensor
 //! components xx, yy, zz, xy, yz, zx; general tensors are row-major; both are three-dimensional in plane strain too.
@@ -45,6 +45,34 @@ pub use table::{
     Input, Kinematics, ModelTable, Output, Parameter, Plugin, State, Transfer, c_text,
 };
 pub use wall::{enter, log, should_stop};
+
+/// Writes the static `PLUGIN` with the listed models, and `plugin`, its entry for programs that link it statically.
+///
+/// Version, author and licence are those of the package in which the macro stands.
+///
+/// ```text
+/// lahar_plugin::plugin!(c"org.lahar.newtonian", [Newtonian, TaitWater]);
+/// ```
+#[macro_export]
+macro_rules! plugin {
+    ($id:expr, [$($model:ty),+ $(,)?]) => {
+        /// The plugin with the models of this crate.
+        pub static PLUGIN: $crate::Plugin = $crate::Plugin::new(
+            $id,
+            $crate::c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
+            &[$($crate::ModelTable::of::<$model>()),+],
+        )
+        .author($crate::c_text(concat!(env!("CARGO_PKG_AUTHORS"), "\0")))
+        .licence($crate::c_text(concat!(env!("CARGO_PKG_LICENSE"), "\0")));
+
+        /// The entry of the plugin, for programs that link its models statically.
+        pub fn plugin(
+            host: &'static $crate::abi::lahar_host_api,
+        ) -> $crate::abi::LinkedPlugin {
+            PLUGIN.entered(host)
+        }
+    };
+}
 
 /// Writes `lahar_plugin_entry_v1`, which returns the given `&'static Plugin`.
 ///

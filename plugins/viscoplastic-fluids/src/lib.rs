@@ -8,25 +8,10 @@ mod flow;
 
 use flow::{Flow, Power, Viscosity};
 use lahar_model_newtonian::fluid::{self, EquationOfState, Fluid};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
-use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, State, c_text,
-};
+use lahar_plugin::{Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, State};
 use std::ffi::CStr;
 
-/// The plugin with both models.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.viscoplastic_fluids",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<Bingham>(), ModelTable::of::<HerschelBulkley>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the models statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.viscoplastic_fluids", [Bingham, HerschelBulkley]);
 
 /// `n` points of the model `M` for a bench: all of them in flow, different in each point. Made for steps of 1e-4 s.
 pub fn sample<M: Model>(n: usize) -> Result<Driver, String> {

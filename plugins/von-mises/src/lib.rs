@@ -8,29 +8,16 @@
 mod hardening;
 
 use hardening::{Hardening, Return};
-use lahar_plugin::abi::{LinkedPlugin, lahar_host_api};
 use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point,
-    PointLaw, PointStatus, State, Transfer, Updated, c_text,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
+    PointStatus, State, Transfer, Updated,
 };
 use std::ffi::CStr;
 
-/// The plugin with this model.
-pub static PLUGIN: Plugin = Plugin::new(
-    c"org.lahar.von_mises",
-    c_text(concat!(env!("CARGO_PKG_VERSION"), "\0")),
-    &[ModelTable::of::<VonMises>()],
-)
-.author(c"The lahar developers")
-.licence(c"MIT OR Apache-2.0");
-
-/// The entry of the plugin, for programs that link the model statically.
-pub fn plugin(host: &'static lahar_host_api) -> LinkedPlugin {
-    PLUGIN.entered(host)
-}
+lahar_plugin::plugin!(c"org.lahar.von_mises", [VonMises]);
 
 /// `n` points for a bench, all of them in plastic flow, different in each point; with Voce hardening of `voce_stress` [Pa].
 pub fn sample(voce_stress: f64, n: usize) -> Result<Driver, String> {
