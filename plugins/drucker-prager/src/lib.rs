@@ -11,8 +11,8 @@ mod tangent;
 use cone::{Cone, ConeKind};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Transfer, Updated, elastic,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
+    Transfer, Updated, elastic,
 };
 use std::ffi::CStr;
 
@@ -50,7 +50,6 @@ impl Model for DruckerPrager {
         c"Drucker-Prager, perfectly plastic, non-associated, with a tension cut-off";
     const REFERENCE: &'static CStr =
         c"Drucker, Prager: Soil mechanics and plastic analysis or limit design, Q. Appl. Math. 10 (1952), doi:10.1090/qam/48291";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         elastic::YOUNGS_MODULUS,
         elastic::POISSONS_RATIO,
@@ -95,7 +94,6 @@ impl Model for DruckerPrager {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];

@@ -6,7 +6,7 @@ use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Updated, principal,
+    PointStatus, Updated, principal,
 };
 use std::ffi::CStr;
 
@@ -96,7 +96,6 @@ impl Model for Hencky {
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
     ];
-    const STATES: &'static [State] = &[];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::ENERGY).and(Output::STATUS);
 

@@ -7,8 +7,8 @@
 
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, Updated, elastic,
+    Batch, Driver, Input, Model, ModelTable, Output, Parameter, Point, PointLaw, PointStatus,
+    Updated, elastic,
 };
 use std::ffi::CStr;
 
@@ -154,7 +154,6 @@ impl Model for IdealGas {
     const NAME: &'static CStr = c"ideal_gas";
     const SUMMARY: &'static CStr = c"Ideal gas with artificial viscosity for shocks";
     const REFERENCE: &'static CStr = c"von Neumann, Richtmyer: A method for the numerical calculation of hydrodynamic shocks, J. Appl. Phys. 21 (1950), doi:10.1063/1.1699639";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(
             c"heat_capacity_ratio",

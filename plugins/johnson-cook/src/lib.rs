@@ -12,8 +12,7 @@ use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
-    Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
 };
 use std::ffi::CStr;
 
@@ -47,7 +46,6 @@ impl Model for JohnsonCook {
         c"Johnson-Cook plasticity of metals: hardening, rate, temperature and adiabatic heating";
     const REFERENCE: &'static CStr = c"Johnson, Cook: Proc. 7th Int. Symp. Ballistics (1983) 541-547; Eng. Fract. Mech. 21 (1985) 31-48, \
           doi:10.1016/0013-7944(85)90052-9";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         elastic::YOUNGS_MODULUS.typical(1.24e11).advised(1.0e6, 1.0e12),
         elastic::POISSONS_RATIO.typical(0.34),
@@ -125,7 +123,6 @@ impl Model for JohnsonCook {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density, Input::Temperature];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean, Transfer::Mean];

@@ -4,8 +4,8 @@
 use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::tensor::{is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Updated,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Parameter, Point, PointLaw, PointStatus,
+    Updated,
 };
 use std::ffi::CStr;
 
@@ -41,16 +41,13 @@ impl Model for LinearElastic {
     const SUMMARY: &'static CStr = c"Isotropic linear elasticity in rate form";
     const REFERENCE: &'static CStr =
         c"Belytschko, Liu, Moran, Elkhodary: Nonlinear Finite Elements, 2nd ed. (2014), section 5.4";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
             .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
         elastic::POISSONS_RATIO,
     ];
-    const STATES: &'static [State] = &[];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
 
@@ -122,9 +119,7 @@ impl Model for LinearElasticGreenNaghdi {
         c"Dienes: Acta Mechanica 32 (1979) 217-232, doi:10.1007/BF01379008";
     const KINEMATICS: Kinematics = Kinematics::GreenNaghdi;
     const PARAMETERS: &'static [Parameter] = LinearElastic::PARAMETERS;
-    const STATES: &'static [State] = LinearElastic::STATES;
     const INPUTS: &'static [Input] = LinearElastic::INPUTS;
-    const OUTPUTS: Output = LinearElastic::OUTPUTS;
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
 

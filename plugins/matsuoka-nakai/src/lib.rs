@@ -11,8 +11,7 @@ use lahar_plugin::elastic::{self, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
-    Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
 };
 use returning::Material;
 use std::ffi::CStr;
@@ -51,7 +50,6 @@ impl Model for MatsuokaNakai {
         c"Matsuoka-Nakai, perfectly plastic, non-associated, with a cut-off of mean tension";
     const REFERENCE: &'static CStr =
         c"Matsuoka, Nakai: Stress-deformation and strength characteristics of soil under three different principal stresses, Proc. JSCE 232 (1974), doi:10.2208/jscej1969.1974.232_59";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         elastic::YOUNGS_MODULUS,
         elastic::POISSONS_RATIO,
@@ -100,7 +98,6 @@ impl Model for MatsuokaNakai {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];

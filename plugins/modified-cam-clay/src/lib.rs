@@ -12,8 +12,7 @@ mod swelling;
 use ellipse::{Ellipse, End, Step};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
-    Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
 };
 use std::ffi::CStr;
 use swelling::{SpecificVolume, Swelling};
@@ -52,7 +51,6 @@ impl Model for ModifiedCamClay {
         c"Modified Cam-Clay: critical state, volumetric hardening, pressure-dependent elasticity";
     const REFERENCE: &'static CStr =
         c"Roscoe, Burland: On the generalized stress-strain behaviour of wet clay, in Engineering Plasticity (1968); Borja, Lee: Comput. Methods Appl. Mech. Engrg. 78 (1990) 49-72, doi:10.1016/0045-7825(90)90152-C";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"critical_stress_ratio", c"M", c"-", c"q/p at the critical state")
             .typical(1.0)
@@ -128,7 +126,6 @@ impl Model for ModifiedCamClay {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean, Transfer::Mean, Transfer::Mean];
 

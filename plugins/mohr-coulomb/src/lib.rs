@@ -14,8 +14,7 @@ use lahar_plugin::elastic::{self, lame, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
-    Transfer, gap,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, gap,
 };
 use planes::Elasticity;
 use std::ffi::CStr;
@@ -52,7 +51,6 @@ impl Model for MohrCoulomb {
         c"Mohr-Coulomb, non-associated, with a tension cut-off and softening of phi, c and psi";
     const REFERENCE: &'static CStr =
         c"Clausen, Damkilde, Andersen: An efficient return algorithm for non-associated plasticity with linear yield criteria in principal stress space, Comput. Struct. 85 (2007), doi:10.1016/j.compstruc.2007.04.002";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         elastic::YOUNGS_MODULUS,
         elastic::POISSONS_RATIO,
@@ -133,7 +131,6 @@ impl Model for MohrCoulomb {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];

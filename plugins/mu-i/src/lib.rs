@@ -9,8 +9,8 @@
 use lahar_plugin::elastic::lame;
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Transfer, Updated, elastic,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
+    Transfer, Updated, elastic,
 };
 use std::ffi::CStr;
 
@@ -176,7 +176,6 @@ impl Model for MuI {
     const SUMMARY: &'static CStr =
         c"Dry granular flow: mu(I) rheology, elastic at rest, open in tension";
     const REFERENCE: &'static CStr = c"Jop, Forterre, Pouliquen: A constitutive law for dense granular flows, Nature 441 (2006), doi:10.1038/nature04801; Dunatunga, Kamrin: J. Fluid Mech. 779 (2015), doi:10.1017/jfm.2015.383";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus of the packing")
             .typical(1.0e6)
@@ -231,7 +230,6 @@ impl Model for MuI {
         State::scalar(c"inertial_number", c"-", c"I of the last step; 0 where nothing flows"),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     // The mean of an open and a closed point would lose the stress of the closed one.

@@ -6,7 +6,7 @@ use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{contract, determinant, deviator, is_finite, left_cauchy_green, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Updated,
+    PointStatus, Updated,
 };
 use std::ffi::CStr;
 
@@ -61,7 +61,6 @@ impl Model for NeoHookean {
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
     ];
-    const STATES: &'static [State] = &[];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::ENERGY).and(Output::STATUS);
 

@@ -9,7 +9,7 @@ mod tait_water;
 pub use tait_water::TaitWater;
 
 use fluid::{EquationOfState, Fluid, Viscous};
-use lahar_plugin::{Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, State};
+use lahar_plugin::{Batch, Driver, Input, Model, ModelTable, Output, Parameter, State};
 use std::ffi::CStr;
 
 lahar_plugin::plugin!(c"org.lahar.newtonian", [Newtonian, TaitWater]);
@@ -38,7 +38,6 @@ impl Model for Newtonian {
     const SUMMARY: &'static CStr = c"Weakly compressible Newtonian fluid";
     const REFERENCE: &'static CStr =
         c"Monaghan: Simulating free surface flows with SPH, J. Comput. Phys. 110 (1994), doi:10.1006/jcph.1994.1034";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         fluid::BULK_MODULUS,
         Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity")

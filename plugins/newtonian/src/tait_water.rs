@@ -1,7 +1,7 @@
 //! Water after Tait, which cavitates.
 
 use crate::fluid::{EXPONENT, EquationOfState, Fluid, STATES, Viscous};
-use lahar_plugin::{Batch, Input, Kinematics, Model, Output, Parameter, State};
+use lahar_plugin::{Batch, Input, Model, Output, Parameter, State};
 use std::ffi::CStr;
 
 /// Constants of an instance.
@@ -16,7 +16,6 @@ impl Model for TaitWater {
         c"Water after Tait, which cavitates at a pressure and remembers its voids";
     const REFERENCE: &'static CStr =
         c"Monaghan: Simulating free surface flows with SPH, J. Comput. Phys. 110 (1994), doi:10.1006/jcph.1994.1034";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"bulk_modulus", c"K", c"Pa", c"rho0 c0^2: of the liquid at volume ratio 1")
             .typical(2.2e9)

@@ -13,8 +13,7 @@ use dual::Dual;
 use integrate::{LEAST_IMAGE, Sand};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, PointStatus, State,
-    Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
 };
 use law::{Elasticity, Law};
 use std::ffi::CStr;
@@ -48,7 +47,6 @@ impl Model for NorSand {
         c"NorSand: critical state model of sand with the state parameter and limited hardening";
     const REFERENCE: &'static CStr =
         c"Jefferies: Nor-Sand: a simple critical state model for sand, Geotechnique 43 (1993) 91-103, doi:10.1680/geot.1993.43.1.91";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(
             c"shear_modulus",
@@ -187,7 +185,6 @@ impl Model for NorSand {
         ),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const TRANSFER: &'static [Transfer] =
         &[Transfer::Mean, Transfer::Mean, Transfer::Mean, Transfer::Mean];

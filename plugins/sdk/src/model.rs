@@ -12,16 +12,16 @@ pub trait Model: Sized + Send + Sync + 'static {
     const SUMMARY: &'static CStr;
     /// Where the model is published.
     const REFERENCE: &'static CStr;
-    /// Which measure of deformation the model takes.
-    const KINEMATICS: Kinematics;
+    /// Which measure of deformation the model takes; by default the strain increment.
+    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     /// The parameters, in the order in which `new` gets their values.
     const PARAMETERS: &'static [Parameter];
     /// The state variables, in the order of their components in a batch.
     const STATES: &'static [State] = &[];
     /// The wanted inputs, at most [`MAX_INPUTS`](crate::MAX_INPUTS); their order is that of [`Batch::input`].
     const INPUTS: &'static [Input] = &[];
-    /// The outputs beside the stress. [`Output::WAVE_SPEED`] is mandatory.
-    const OUTPUTS: Output;
+    /// The outputs beside the stress, by default wave speed and status. [`Output::WAVE_SPEED`] is mandatory.
+    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     /// Whether [`Model::tangent`] is written.
     const HAS_TANGENT: bool = false;
     /// Whether [`Model::stored_energy`] is written.

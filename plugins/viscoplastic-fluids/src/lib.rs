@@ -8,7 +8,7 @@ mod flow;
 
 use flow::{Flow, Power, Viscosity};
 use lahar_model_newtonian::fluid::{self, EquationOfState, Fluid};
-use lahar_plugin::{Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, State};
+use lahar_plugin::{Batch, Driver, Input, Model, ModelTable, Parameter, State};
 use std::ffi::CStr;
 
 lahar_plugin::plugin!(c"org.lahar.viscoplastic_fluids", [Bingham, HerschelBulkley]);
@@ -67,10 +67,8 @@ impl Constants {
 macro_rules! viscoplastic {
     ($model:ty) => {
         const REFERENCE: &'static CStr = REFERENCE;
-        const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
         const STATES: &'static [State] = fluid::STATES;
         const INPUTS: &'static [Input] = &[Input::Density];
-        const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
         const HAS_TANGENT: bool = true;
 
         fn init_state(&self, batch: &mut Batch<'_>) -> Result<(), String> {

@@ -12,8 +12,8 @@ use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, State, Transfer, Updated,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
+    Transfer, Updated,
 };
 use std::ffi::CStr;
 
@@ -51,7 +51,6 @@ impl Model for VonMises {
         c"Von Mises plasticity with linear and Voce isotropic hardening or softening";
     const REFERENCE: &'static CStr =
         c"Simo, Hughes: Computational Inelasticity (1998), section 3.3, doi:10.1007/b98904";
-    const KINEMATICS: Kinematics = Kinematics::StrainIncrement;
     const PARAMETERS: &'static [Parameter] = &[
         elastic::YOUNGS_MODULUS.typical(2.0e11).advised(1.0e3, 1.0e12),
         elastic::POISSONS_RATIO,
@@ -95,7 +94,6 @@ impl Model for VonMises {
         c"Sum of sqrt(2/3 de_p : de_p) of the plastic strain",
     )];
     const INPUTS: &'static [Input] = &[Input::Density];
-    const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     const HAS_TANGENT: bool = true;
     const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean];
