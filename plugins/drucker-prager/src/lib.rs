@@ -9,10 +9,11 @@ mod cone;
 mod tangent;
 
 use cone::{Cone, ConeKind};
+use lahar_plugin::elastic::{self, Elastic};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated, elastic,
+    Transfer, Updated, elastic_model,
 };
 use std::ffi::CStr;
 
@@ -95,8 +96,8 @@ impl Model for DruckerPrager {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [_, _, friction, cohesion, dilation, _, cutoff] = values[..] else {
@@ -136,31 +137,25 @@ impl Model for DruckerPrager {
         batch.for_each_point(self);
     }
 
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         let [_, opened] = batch.state0(k);
         self.tangent_of(batch.stress0(k), opened, batch.strain_increment(k))
     }
+}
 
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy(self.lame(), batch.stress0(k))
+impl Elastic for DruckerPrager {
+    fn lame(&self) -> [f64; 2] {
+        [self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus, self.shear_modulus]
+    }
+
+    // Also of opened points, which may close at any time.
+    #[inline(always)]
+    fn wave_modulus(&self) -> f64 {
+        self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
     }
 }
 
 impl DruckerPrager {
-    /// Elastic speed; also of opened points, which may close at any time.
-    #[inline(always)]
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        ((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / density).sqrt()
-    }
-
     /// A closed point: elastic trial from `stress0` with the deviator and the trace of a strain, return to the cone,
     /// tension cut-off.
     #[inline(always)]

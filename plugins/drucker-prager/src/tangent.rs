@@ -2,16 +2,11 @@
 
 use crate::DruckerPrager;
 use crate::cone::Cone;
-use lahar_plugin::elastic::stiffness;
+use lahar_plugin::elastic::{Elastic, stiffness};
 use lahar_plugin::gap;
 use lahar_plugin::tensor::{contract, deviator, trace};
 
 impl DruckerPrager {
-    /// Lamé's constants [Pa].
-    pub(crate) fn lame(&self) -> [f64; 2] {
-        [self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus, self.shear_modulus]
-    }
-
     /// Derivative [Pa] of the end stress (rows) by the strain increment (columns); zero for what ends open.
     pub(crate) fn tangent_of(
         &self,

@@ -8,11 +8,11 @@
 mod flow;
 
 use flow::{Flow, Solution, Step};
-use lahar_plugin::elastic::{self, lame};
+use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic_model,
 };
 use std::ffi::CStr;
 
@@ -124,8 +124,8 @@ impl Model for JohnsonCook {
     ];
     const INPUTS: &'static [Input] = &[Input::Density, Input::Temperature];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean, Transfer::Mean];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         Self::new(values).map(drop)
@@ -166,14 +166,6 @@ impl Model for JohnsonCook {
         }
     }
 
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         let trial = Trial::new(self.lame, batch.stress0(k), batch.strain_increment(k));
         let step = self.step(batch, k, trial.q);
@@ -185,20 +177,16 @@ impl Model for JohnsonCook {
             None => [[f64::NAN; 6]; 6],
         }
     }
+}
 
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy(self.lame, batch.stress0(k))
+impl Elastic for JohnsonCook {
+    #[inline(always)]
+    fn lame(&self) -> [f64; 2] {
+        self.lame
     }
 }
 
 impl JohnsonCook {
-    /// Elastic speed.
-    #[inline(always)]
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        let [lambda, mu] = self.lame;
-        ((lambda + 2.0 * mu) / density).sqrt()
-    }
-
     /// The equation of point `k` for a trial q [Pa].
     fn step(&self, batch: &Batch<'_>, k: usize, q: f64) -> Step<'_> {
         let [strain0, rise0] = batch.state0(k);

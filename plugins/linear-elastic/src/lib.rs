@@ -1,11 +1,11 @@
 //! Isotropic linear elasticity in rate form: Δσ = λ tr(Δε) I + 2 G Δε on the objectively rotated stress.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::elastic::{self, lame};
-use lahar_plugin::tensor::{is_finite, trace};
+use lahar_plugin::elastic::{self, Elastic, lame};
+use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Parameter, Point, PointLaw, PointStatus,
-    Updated,
+    Updated, elastic_model,
 };
 use std::ffi::CStr;
 
@@ -23,16 +23,16 @@ pub fn sample(n: usize) -> Result<Driver, String> {
     Ok(driver)
 }
 
-/// Elastic constants of an instance [Pa].
+/// Constants of an instance.
 pub struct LinearElastic {
-    lambda: f64,
-    shear_modulus: f64,
+    /// Lamé's constants [Pa].
+    lame: [f64; 2],
 }
 
-impl LinearElastic {
+impl Elastic for LinearElastic {
     #[inline(always)]
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        ((self.lambda + 2.0 * self.shear_modulus) / density).sqrt()
+    fn lame(&self) -> [f64; 2] {
+        self.lame
     }
 }
 
@@ -49,12 +49,11 @@ impl Model for LinearElastic {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
+    elastic_model!();
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [e, nu] = values[..] else { return Err("expected 2 values".into()) };
-        let [lambda, shear_modulus] = lame(e, nu)?;
-        Ok(Self { lambda, shear_modulus })
+        Ok(Self { lame: lame(e, nu)? })
     }
 
     #[inline(always)]
@@ -62,20 +61,8 @@ impl Model for LinearElastic {
         batch.for_each_point(self);
     }
 
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, _: &Batch<'_>, _: usize) -> [[f64; 6]; 6] {
-        elastic::stiffness([self.lambda, self.shear_modulus])
-    }
-
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy([self.lambda, self.shear_modulus], batch.stress0(k))
+        elastic::stiffness(self.lame)
     }
 }
 
@@ -84,17 +71,7 @@ impl PointLaw<0> for LinearElastic {
 
     #[inline(always)]
     fn update(&self, point: &Point<0>) -> Updated<0> {
-        let (strain, stress0) = (point.strain_increment, point.stress0);
-        let volumetric = self.lambda * trace(strain);
-        let two_g = 2.0 * self.shear_modulus;
-        let stress1 = [
-            stress0[0] + volumetric + two_g * strain[0], // [STR-9]
-            stress0[1] + volumetric + two_g * strain[1],
-            stress0[2] + volumetric + two_g * strain[2],
-            stress0[3] + two_g * strain[3],
-            stress0[4] + two_g * strain[4],
-            stress0[5] + two_g * strain[5],
-        ];
+        let stress1 = elastic::stress(self.lame, point.stress0, point.strain_increment);
         let wave_speed = self.wave_speed_of(point.inputs[0]);
         let sane = is_finite(stress1) & is_finite([wave_speed]);
         Updated {
@@ -111,6 +88,13 @@ impl PointLaw<0> for LinearElastic {
 /// The same law on a stress that the engine turns with R of F = R U instead of with the spin.
 pub struct LinearElasticGreenNaghdi(LinearElastic);
 
+impl Elastic for LinearElasticGreenNaghdi {
+    #[inline(always)]
+    fn lame(&self) -> [f64; 2] {
+        self.0.lame
+    }
+}
+
 impl Model for LinearElasticGreenNaghdi {
     const NAME: &'static CStr = c"linear_elastic_green_naghdi";
     const SUMMARY: &'static CStr =
@@ -121,7 +105,7 @@ impl Model for LinearElasticGreenNaghdi {
     const PARAMETERS: &'static [Parameter] = LinearElastic::PARAMETERS;
     const INPUTS: &'static [Input] = LinearElastic::INPUTS;
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
+    elastic_model!();
 
     fn new(values: &[f64]) -> Result<Self, String> {
         LinearElastic::new(values).map(Self)
@@ -132,17 +116,8 @@ impl Model for LinearElasticGreenNaghdi {
         batch.for_each_point(self);
     }
 
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        self.0.wave_speed(batch);
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         self.0.tangent(batch, k)
-    }
-
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        self.0.stored_energy(batch, k)
     }
 }
 

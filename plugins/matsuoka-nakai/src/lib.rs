@@ -7,11 +7,11 @@
 mod returning;
 mod surface;
 
-use lahar_plugin::elastic::{self, stiffness};
+use lahar_plugin::elastic::{self, Elastic, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic_model,
 };
 use returning::Material;
 use std::ffi::CStr;
@@ -99,8 +99,8 @@ impl Model for MatsuokaNakai {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [_, _, friction, cohesion, dilation, cutoff] = values[..] else {
@@ -145,19 +145,8 @@ impl Model for MatsuokaNakai {
         }
     }
 
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         self.tangent_of(batch.stress0(k), batch.state0(k), batch.strain_increment(k))
-    }
-
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy(self.lame(), batch.stress0(k))
     }
 }
 
@@ -177,17 +166,19 @@ struct Trial {
     tolerance: f64,
 }
 
-impl MatsuokaNakai {
+impl Elastic for MatsuokaNakai {
     fn lame(&self) -> [f64; 2] {
         let Material { bulk, shear, .. } = self.material;
         [bulk - 2.0 / 3.0 * shear, shear]
     }
 
-    fn wave_speed_of(&self, density: f64) -> f64 {
+    fn wave_modulus(&self) -> f64 {
         let Material { bulk, shear, .. } = self.material;
-        ((bulk + 4.0 / 3.0 * shear) / density).sqrt()
+        bulk + 4.0 / 3.0 * shear
     }
+}
 
+impl MatsuokaNakai {
     /// Volumetric strain first closes the gap of an open point, whose pressure is at the cut-off.
     fn trial(&self, stress0: [f64; 6], opened: f64, strain: [f64; 6]) -> Trial {
         let Material { bulk, shear, surface, tension } = self.material;

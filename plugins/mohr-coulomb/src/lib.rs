@@ -10,11 +10,12 @@ mod planes;
 mod strength;
 
 use integrate::{Material, Step};
-use lahar_plugin::elastic::{self, lame, stiffness};
+use lahar_plugin::elastic::{self, Elastic, lame, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, gap,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    elastic_model, gap,
 };
 use planes::Elasticity;
 use std::ffi::CStr;
@@ -132,8 +133,8 @@ impl Model for MohrCoulomb {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         let Values { friction, cohesion, dilation, cutoff, softening, residual, .. } =
@@ -216,19 +217,8 @@ impl Model for MohrCoulomb {
         }
     }
 
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         self.tangent_of(batch.stress0(k), batch.state0(k), batch.strain_increment(k))
-    }
-
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy(self.lame(), batch.stress0(k))
     }
 }
 
@@ -292,17 +282,14 @@ struct Trial {
     gap: Option<f64>,
 }
 
-impl MohrCoulomb {
+impl Elastic for MohrCoulomb {
     fn lame(&self) -> [f64; 2] {
         let Elasticity { lambda, two_g } = self.material.elasticity;
         [lambda, 0.5 * two_g]
     }
+}
 
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        let Elasticity { lambda, two_g } = self.material.elasticity;
-        ((lambda + two_g) / density).sqrt()
-    }
-
+impl MohrCoulomb {
     /// An open point stands at the cut-off in all directions; its deviatoric strain is plastic.
     fn trial(&self, stress0: [f64; 6], [kappa, opened]: [f64; 2], strain: [f64; 6]) -> Trial {
         let Elasticity { lambda, two_g } = self.material.elasticity;

@@ -6,11 +6,11 @@
 //! step is a quadratic equation for τ.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::elastic::lame;
+use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated, elastic,
+    Transfer, Updated, elastic_model,
 };
 use std::ffi::CStr;
 
@@ -66,13 +66,19 @@ struct Flow {
     shear: f64,
 }
 
-impl MuI {
-    /// Elastic speed; also of open points, which may close at any time.
-    #[inline(always)]
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        ((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / density).sqrt()
+impl Elastic for MuI {
+    fn lame(&self) -> [f64; 2] {
+        [self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus, self.shear_modulus]
     }
 
+    // Also of open points, which may close at any time.
+    #[inline(always)]
+    fn wave_modulus(&self) -> f64 {
+        self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus
+    }
+}
+
+impl MuI {
     #[inline(always)]
     fn trial(&self, stress0: [f64; 6], strain: [f64; 6], opened0: f64) -> Trial {
         // An open point starts without stress; what is left of the increment when the gap has closed loads it.
@@ -231,9 +237,9 @@ impl Model for MuI {
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     // The mean of an open and a closed point would lose the stress of the closed one.
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean, Transfer::Never, Transfer::Mean];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [_, _, slow, fast, ..] = values[..] else {
@@ -267,14 +273,6 @@ impl Model for MuI {
     fn update(&self, batch: &mut Batch<'_>) {
         let dt = batch.dt();
         batch.for_each_point(&Step { model: self, dt });
-    }
-
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
     }
 
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
@@ -324,9 +322,5 @@ impl Model for MuI {
             }
         }
         tangent
-    }
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        let lambda = self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus;
-        elastic::energy([lambda, self.shear_modulus], batch.stress0(k))
     }
 }

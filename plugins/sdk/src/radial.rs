@@ -1,6 +1,6 @@
 //! Return of a trial stress along its own deviator: what models share that yield by q = sqrt(3/2 s : s) alone.
 
-use crate::elastic::stiffness;
+use crate::elastic::{self, stiffness};
 use crate::tensor::{contract, deviator, trace};
 
 /// The elastic trial stress of a step.
@@ -19,17 +19,8 @@ pub struct Trial {
 impl Trial {
     /// Isotropic elasticity with Lamé's constants [Pa] from a start stress [Pa] by a strain increment [-].
     #[inline(always)]
-    pub fn new([lambda, mu]: [f64; 2], stress0: [f64; 6], strain: [f64; 6]) -> Self {
-        let volumetric = lambda * trace(strain);
-        let two_mu = 2.0 * mu;
-        let stress = [
-            stress0[0] + volumetric + two_mu * strain[0], // [STR-9]
-            stress0[1] + volumetric + two_mu * strain[1],
-            stress0[2] + volumetric + two_mu * strain[2],
-            stress0[3] + two_mu * strain[3],
-            stress0[4] + two_mu * strain[4],
-            stress0[5] + two_mu * strain[5],
-        ];
+    pub fn new(lame: [f64; 2], stress0: [f64; 6], strain: [f64; 6]) -> Self {
+        let stress = elastic::stress(lame, stress0, strain);
         let s = deviator(stress);
         Self { stress, deviator: s, mean: trace(stress) / 3.0, q: (1.5 * contract(s, s)).sqrt() }
     }

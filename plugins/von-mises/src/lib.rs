@@ -8,12 +8,12 @@
 mod hardening;
 
 use hardening::{Hardening, Return};
-use lahar_plugin::elastic::{self, lame};
+use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated,
+    Transfer, Updated, elastic_model,
 };
 use std::ffi::CStr;
 
@@ -95,8 +95,8 @@ impl Model for VonMises {
     )];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
-    const HAS_STORED_ENERGY: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean];
+    elastic_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         Self::new(values).map(drop)
@@ -130,14 +130,6 @@ impl Model for VonMises {
         }
     }
 
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        let density = batch.input(0);
-        for k in 0..batch.n() {
-            batch.set_wave_speed(k, self.wave_speed_of(density[k]));
-        }
-    }
-
     fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
         let trial = Trial::new(self.lame, batch.stress0(k), batch.strain_increment(k));
         let [kappa0] = batch.state0(k);
@@ -151,18 +143,12 @@ impl Model for VonMises {
             elastic::stiffness(self.lame)
         }
     }
-
-    fn stored_energy(&self, batch: &Batch<'_>, k: usize) -> f64 {
-        elastic::energy(self.lame, batch.stress0(k))
-    }
 }
 
-impl VonMises {
-    /// Elastic speed.
+impl Elastic for VonMises {
     #[inline(always)]
-    fn wave_speed_of(&self, density: f64) -> f64 {
-        let [lambda, mu] = self.lame;
-        ((lambda + 2.0 * mu) / density).sqrt()
+    fn lame(&self) -> [f64; 2] {
+        self.lame
     }
 }
 
