@@ -12,8 +12,8 @@ use cone::{Cone, ConeKind};
 use lahar_plugin::elastic::{self, Elastic};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated, elastic_model,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
+    elastic_model,
 };
 use std::ffi::CStr;
 
@@ -225,18 +225,7 @@ impl PointLaw<2> for DruckerPrager {
             if stays_open { gap } else { loaded.opened },
         ];
         let wave_speed = self.wave_speed_of(point.inputs[0]);
-        let sane = is_finite(loaded.stress)
-            & is_finite(point.stress0)
-            & is_finite(strain)
-            & is_finite(state1)
-            & is_finite([wave_speed]);
-        Updated {
-            stress1: loaded.stress,
-            state1,
-            wave_speed,
-            diffusivity: 0.0,
-            energy: 0.0,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        let sane = is_finite(point.stress0) & is_finite(strain);
+        Updated::checked(loaded.stress, state1, wave_speed, sane)
     }
 }

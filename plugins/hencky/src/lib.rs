@@ -6,7 +6,7 @@ use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, Updated, principal,
+    Updated, principal,
 };
 use std::ffi::CStr;
 
@@ -142,14 +142,7 @@ impl PointLaw<0> for Hencky {
         let work = t[0] * p.log[0] + t[1] * p.log[1] + t[2] * p.log[2]; // 2 τ : ε
         let energy = 0.25 * work * inverse; // [STR-14]
         let wave_speed = self.wave_speed_of(&p, j, point.inputs[0]);
-        let sane = is_finite(stress1) & is_finite([wave_speed, energy]) & (j > 0.0);
-        Updated {
-            stress1,
-            state1: [],
-            wave_speed,
-            diffusivity: 0.0,
-            energy,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        let sane = is_finite([energy]) & (j > 0.0);
+        Updated { energy, ..Updated::checked(stress1, [], wave_speed, sane) }
     }
 }

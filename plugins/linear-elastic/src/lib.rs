@@ -2,10 +2,9 @@
 #![forbid(unsafe_code)]
 
 use lahar_plugin::elastic::{self, Elastic, lame};
-use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Kinematics, Model, ModelTable, Parameter, Point, PointLaw, PointStatus,
-    Updated, elastic_model,
+    Batch, Driver, Input, Kinematics, Model, ModelTable, Parameter, Point, PointLaw, Updated,
+    elastic_model,
 };
 use std::ffi::CStr;
 
@@ -72,16 +71,7 @@ impl PointLaw<0> for LinearElastic {
     #[inline(always)]
     fn update(&self, point: &Point<0>) -> Updated<0> {
         let stress1 = elastic::stress(self.lame, point.stress0, point.strain_increment);
-        let wave_speed = self.wave_speed_of(point.inputs[0]);
-        let sane = is_finite(stress1) & is_finite([wave_speed]);
-        Updated {
-            stress1,
-            state1: [],
-            wave_speed,
-            diffusivity: 0.0,
-            energy: 0.0,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        Updated::checked(stress1, [], self.wave_speed_of(point.inputs[0]), true)
     }
 }
 

@@ -9,8 +9,8 @@
 use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated, elastic_model,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
+    elastic_model,
 };
 use std::ffi::CStr;
 
@@ -154,20 +154,8 @@ impl PointLaw<3> for Step<'_> {
         let state1 =
             [shear_strain0 + free + plastic, trial.opened, if open { 0.0 } else { number }];
         let wave_speed = model.wave_speed_of(point.inputs[0]);
-        let sane = is_finite(stress1)
-            & is_finite(state1)
-            & is_finite(strain)
-            & is_finite(point.stress0)
-            & is_finite([wave_speed])
-            & (opened0 >= 0.0);
-        Updated {
-            stress1,
-            state1,
-            wave_speed,
-            diffusivity: 0.0,
-            energy: 0.0,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        let sane = is_finite(strain) & is_finite(point.stress0) & (opened0 >= 0.0);
+        Updated::checked(stress1, state1, wave_speed, sane)
     }
 }
 

@@ -6,7 +6,7 @@ use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{contract, determinant, deviator, is_finite, left_cauchy_green, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Kinematics, Model, ModelTable, Output, Parameter, Point, PointLaw,
-    PointStatus, Updated,
+    Updated,
 };
 use std::ffi::CStr;
 
@@ -105,14 +105,6 @@ impl PointLaw<0> for NeoHookean {
         let stretched = 0.5 * mu * (trace(b) - 3.0);
         let energy = (stretched - mu * ln_j + 0.5 * volumetric * ln_j) * inverse; // [STR-11]
         let wave_speed = self.wave_speed_of(f, point.inputs[0]);
-        let sane = is_finite(stress1) & is_finite([wave_speed, energy]);
-        Updated {
-            stress1,
-            state1: [],
-            wave_speed,
-            diffusivity: 0.0,
-            energy,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        Updated { energy, ..Updated::checked(stress1, [], wave_speed, is_finite([energy])) }
     }
 }

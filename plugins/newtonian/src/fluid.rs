@@ -3,9 +3,7 @@
 
 use crate::pressure::{Pressure, Real, Whole};
 use lahar_plugin::tensor::{deviator, is_finite, trace};
-use lahar_plugin::{
-    Batch, Model, Parameter, Point, PointLaw, PointStatus, State, Updated, elastic, math,
-};
+use lahar_plugin::{Batch, Model, Parameter, Point, PointLaw, State, Updated, elastic, math};
 use std::marker::PhantomData;
 
 /// The parameter `bulk_modulus` [Pa] of a fluid that may be made softer than it is.
@@ -248,14 +246,8 @@ impl<M: Model, P: Pressure, D: Deviator> PointLaw<1> for Law<M, P, D> {
         let [xx, yy, zz, xy, yz, zx] = self.deviator.stress(point.stress0, deviator(strain));
         let stress1 = [xx - p, yy - p, zz - p, xy, yz, zx];
         let wave_speed = (self.deviator.wave_modulus(bulk_modulus * tangent) / density).sqrt();
-        let sane = is_finite(strain) & is_finite(stress1) & (j > 0.0) & is_finite([j + wave_speed]);
-        Updated {
-            stress1,
-            state1: [j],
-            wave_speed,
-            diffusivity: self.deviator.viscosity() / density,
-            energy: 0.0,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        let diffusivity = self.deviator.viscosity() / density;
+        let sane = is_finite(strain) & (j > 0.0);
+        Updated { diffusivity, ..Updated::checked(stress1, [j], wave_speed, sane) }
     }
 }

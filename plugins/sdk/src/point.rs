@@ -3,6 +3,7 @@
 use crate::batch::{Batch, MAX_INPUTS, PointStatus};
 use crate::model::Model;
 use crate::table::{Kinematics, Output, state_components};
+use crate::tensor::is_finite;
 
 /// Points that are worked on together. They are copied to arrays of this length and their results back, so that the
 /// compiler sees loops of a fixed length over arrays that do not overlap. Measured: 8 are unrolled, 32 are no faster.
@@ -46,6 +47,17 @@ pub struct Updated<const S: usize> {
     pub energy: f64,
     /// What became of the point.
     pub status: PointStatus,
+}
+
+impl<const S: usize> Updated<S> {
+    /// A point with a stress [Pa], a state and a wave speed [m/s], without diffusivity and energy. It has failed unless it
+    /// is `sane` and all of its values are finite.
+    #[inline(always)]
+    pub fn checked(stress1: [f64; 6], state1: [f64; S], wave_speed: f64, sane: bool) -> Self {
+        let sane = is_finite(stress1) & is_finite(state1) & is_finite([wave_speed]) & sane;
+        let status = if sane { PointStatus::Ok } else { PointStatus::Failed };
+        Self { stress1, state1, wave_speed, diffusivity: 0.0, energy: 0.0, status }
+    }
 }
 
 /// The formulas of one point, with the constants that all points of a batch share.

@@ -86,3 +86,18 @@ fn a_law_sees_and_sets_the_values_of_its_point_bit_for_bit_at_every_level() {
         }
     }
 }
+
+#[test]
+fn a_checked_point_fails_if_a_value_is_not_finite_or_the_law_says_so() {
+    let status = |stress: f64, state: f64, speed: f64, sane: bool| {
+        Updated::checked([0.0, 0.0, 0.0, 0.0, 0.0, stress], [1.0, state], speed, sane).status
+    };
+    assert_eq!(status(-1.0, 2.0, 3.0, true), PointStatus::Ok);
+    assert_eq!(status(-1.0, 2.0, 3.0, false), PointStatus::Failed);
+    for bad in [f64::NAN, f64::INFINITY] {
+        for values in [[bad, 2.0, 3.0], [-1.0, bad, 3.0], [-1.0, 2.0, bad]] {
+            let [stress, state, speed] = values;
+            assert_eq!(status(stress, state, speed, true), PointStatus::Failed);
+        }
+    }
+}

@@ -11,10 +11,10 @@
 //! neither prints nor exits. A panic becomes an error of the host.
 
 use lahar_plugin::elastic::lame;
-use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
+use lahar_plugin::tensor::{contract, deviator, trace};
 use lahar_plugin::{
-    Batch, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point, PointLaw,
-    PointStatus, State, Updated, export_plugin,
+    Batch, Input, Kinematics, Model, ModelTable, Output, Parameter, Plugin, Point, PointLaw, State,
+    Updated, export_plugin,
 };
 use std::ffi::CStr;
 
@@ -116,15 +116,7 @@ impl PointLaw<1> for OwnMaterial {
             stress[c] -= share * s[c];
         }
         let state1 = [point.state0[0] + share * mises / (3.0 * self.shear_modulus)];
-        let wave_speed = self.speed(point.inputs[0]);
-        let sane = is_finite(stress) & is_finite(state1) & is_finite([wave_speed]);
-        Updated {
-            stress1: stress,
-            state1,
-            wave_speed,
-            diffusivity: 0.0,
-            energy: 0.0,
-            status: if sane { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        // failed if one of the values is not finite; more that must hold stands in the place of `true`
+        Updated::checked(stress, state1, self.speed(point.inputs[0]), true)
     }
 }

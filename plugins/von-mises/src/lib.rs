@@ -12,8 +12,8 @@ use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, PointStatus, State,
-    Transfer, Updated, elastic_model,
+    Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
+    elastic_model,
 };
 use std::ffi::CStr;
 
@@ -173,14 +173,6 @@ impl<const VOCE: bool> PointLaw<1> for Law<'_, VOCE> {
         }
         let state1 = [kappa0 + increment];
         let wave_speed = self.0.wave_speed_of(point.inputs[0]);
-        let sane = is_finite(stress1) & is_finite(state1) & is_finite([wave_speed, trial.q]);
-        Updated {
-            stress1,
-            state1,
-            wave_speed,
-            diffusivity: 0.0,
-            energy: 0.0,
-            status: if sane & converged { PointStatus::Ok } else { PointStatus::Failed },
-        }
+        Updated::checked(stress1, state1, wave_speed, is_finite([trial.q]) & converged)
     }
 }
