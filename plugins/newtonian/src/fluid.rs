@@ -83,6 +83,47 @@ pub trait Deviator: Copy {
     }
 }
 
+/// A model that is a [`Fluid`] with a [`Deviator`]. In its `impl Model`, [`fluid_model!`](crate::fluid_model) writes what
+/// follows from both.
+pub trait FluidModel {
+    /// The pressure law.
+    fn fluid(&self) -> &Fluid;
+    /// The law of the deviator in a step of `dt` [s].
+    fn deviator(&self, dt: f64) -> impl Deviator;
+}
+
+/// Writes the state, the input and the functions in the `impl Model` of a type that is a
+/// [`FluidModel`](crate::fluid::FluidModel).
+#[macro_export]
+macro_rules! fluid_model {
+    () => {
+        const STATES: &'static [::lahar_plugin::State] = $crate::fluid::STATES;
+        const INPUTS: &'static [::lahar_plugin::Input] = &[::lahar_plugin::Input::Density];
+        const HAS_TANGENT: bool = true;
+
+        fn init_state(&self, batch: &mut ::lahar_plugin::Batch<'_>) -> Result<(), String> {
+            $crate::fluid::FluidModel::fluid(self).init_state(batch)
+        }
+
+        #[inline(always)]
+        fn update(&self, batch: &mut ::lahar_plugin::Batch<'_>) {
+            let deviator = $crate::fluid::FluidModel::deviator(self, batch.dt());
+            $crate::fluid::FluidModel::fluid(self).update::<Self>(batch, deviator);
+        }
+
+        #[inline(always)]
+        fn wave_speed(&self, batch: &mut ::lahar_plugin::Batch<'_>) {
+            let deviator = $crate::fluid::FluidModel::deviator(self, batch.dt());
+            $crate::fluid::FluidModel::fluid(self).wave_speed(batch, deviator);
+        }
+
+        fn tangent(&self, batch: &::lahar_plugin::Batch<'_>, k: usize) -> [[f64; 6]; 6] {
+            let deviator = $crate::fluid::FluidModel::deviator(self, batch.dt());
+            $crate::fluid::FluidModel::fluid(self).tangent(batch, k, deviator)
+        }
+    };
+}
+
 /// A viscous deviator, s = 2 μ Δe / Δt.
 #[derive(Clone, Copy, Debug)]
 pub struct Viscous {

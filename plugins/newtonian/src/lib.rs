@@ -8,8 +8,8 @@ mod tait_water;
 
 pub use tait_water::TaitWater;
 
-use fluid::{EquationOfState, Fluid, Viscous};
-use lahar_plugin::{Batch, Driver, Input, Model, ModelTable, Output, Parameter, State};
+use fluid::{Deviator, EquationOfState, Fluid, FluidModel, Viscous};
+use lahar_plugin::{Driver, Model, ModelTable, Output, Parameter};
 use std::ffi::CStr;
 
 lahar_plugin::plugin!(c"org.lahar.newtonian", [Newtonian, TaitWater]);
@@ -33,6 +33,18 @@ pub struct Newtonian {
     viscosity: f64,
 }
 
+impl FluidModel for Newtonian {
+    #[inline(always)]
+    fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    #[inline(always)]
+    fn deviator(&self, dt: f64) -> impl Deviator {
+        Viscous::new(self.viscosity, dt)
+    }
+}
+
 impl Model for Newtonian {
     const NAME: &'static CStr = c"newtonian";
     const SUMMARY: &'static CStr = c"Weakly compressible Newtonian fluid";
@@ -48,10 +60,8 @@ impl Model for Newtonian {
         fluid::EXPONENT,
         fluid::ZERO_TENSION,
     ];
-    const STATES: &'static [State] = fluid::STATES;
-    const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
-    const HAS_TANGENT: bool = true;
+    fluid_model!();
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [bulk_modulus, viscosity, equation, exponent, zero_tension] = values[..] else {
@@ -60,23 +70,5 @@ impl Model for Newtonian {
         let fluid =
             Fluid::new(bulk_modulus, EquationOfState::new(equation, exponent), zero_tension);
         Ok(Self { fluid, viscosity })
-    }
-
-    fn init_state(&self, batch: &mut Batch<'_>) -> Result<(), String> {
-        self.fluid.init_state(batch)
-    }
-
-    #[inline(always)]
-    fn update(&self, batch: &mut Batch<'_>) {
-        self.fluid.update::<Self>(batch, Viscous::new(self.viscosity, batch.dt()));
-    }
-
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        self.fluid.wave_speed(batch, Viscous::new(self.viscosity, batch.dt()));
-    }
-
-    fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
-        self.fluid.tangent(batch, k, Viscous::new(self.viscosity, batch.dt()))
     }
 }

@@ -1,13 +1,26 @@
 //! Water after Tait, which cavitates.
 
-use crate::fluid::{EXPONENT, EquationOfState, Fluid, STATES, Viscous};
-use lahar_plugin::{Batch, Input, Model, Output, Parameter, State};
+use crate::fluid::{Deviator, EXPONENT, EquationOfState, Fluid, FluidModel, Viscous};
+use crate::fluid_model;
+use lahar_plugin::{Model, Output, Parameter};
 use std::ffi::CStr;
 
 /// Constants of an instance.
 pub struct TaitWater {
     fluid: Fluid,
     viscosity: f64,
+}
+
+impl FluidModel for TaitWater {
+    #[inline(always)]
+    fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    #[inline(always)]
+    fn deviator(&self, dt: f64) -> impl Deviator {
+        Viscous::new(self.viscosity, dt)
+    }
 }
 
 impl Model for TaitWater {
@@ -43,10 +56,8 @@ impl Model for TaitWater {
         .default(-98_986.0)
         .advised(-1.0e8, 1.0e4),
     ];
-    const STATES: &'static [State] = STATES;
-    const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
-    const HAS_TANGENT: bool = true;
+    fluid_model!();
 
     fn check(values: &[f64]) -> Result<(), String> {
         let [.., background, cavitation] = values[..] else {
@@ -69,23 +80,5 @@ impl Model for TaitWater {
         let equation_of_state = EquationOfState::Tait { exponent };
         let fluid = Fluid { bulk_modulus, equation_of_state, background_pressure, least_pressure };
         Ok(Self { fluid, viscosity })
-    }
-
-    fn init_state(&self, batch: &mut Batch<'_>) -> Result<(), String> {
-        self.fluid.init_state(batch)
-    }
-
-    #[inline(always)]
-    fn update(&self, batch: &mut Batch<'_>) {
-        self.fluid.update::<Self>(batch, Viscous::new(self.viscosity, batch.dt()));
-    }
-
-    #[inline(always)]
-    fn wave_speed(&self, batch: &mut Batch<'_>) {
-        self.fluid.wave_speed(batch, Viscous::new(self.viscosity, batch.dt()));
-    }
-
-    fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
-        self.fluid.tangent(batch, k, Viscous::new(self.viscosity, batch.dt()))
     }
 }

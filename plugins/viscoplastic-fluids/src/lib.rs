@@ -7,8 +7,9 @@
 mod flow;
 
 use flow::{Flow, Power, Viscosity};
-use lahar_model_newtonian::fluid::{self, EquationOfState, Fluid};
-use lahar_plugin::{Batch, Driver, Input, Model, ModelTable, Parameter, State};
+use lahar_model_newtonian::fluid::{self, Deviator, EquationOfState, Fluid, FluidModel};
+use lahar_model_newtonian::fluid_model;
+use lahar_plugin::{Driver, Model, ModelTable, Parameter};
 use std::ffi::CStr;
 
 lahar_plugin::plugin!(c"org.lahar.viscoplastic_fluids", [Bingham, HerschelBulkley]);
@@ -63,43 +64,20 @@ impl Constants {
     }
 }
 
-/// What [`Model`] asks of both in the same words.
-macro_rules! viscoplastic {
-    ($model:ty) => {
-        const REFERENCE: &'static CStr = REFERENCE;
-        const STATES: &'static [State] = fluid::STATES;
-        const INPUTS: &'static [Input] = &[Input::Density];
-        const HAS_TANGENT: bool = true;
-
-        fn init_state(&self, batch: &mut Batch<'_>) -> Result<(), String> {
-            self.constants.fluid.init_state(batch)
-        }
-
-        #[inline(always)]
-        fn update(&self, batch: &mut Batch<'_>) {
-            self.constants.fluid.update::<$model>(batch, self.flow(batch.dt()));
-        }
-
-        #[inline(always)]
-        fn wave_speed(&self, batch: &mut Batch<'_>) {
-            self.constants.fluid.wave_speed(batch, self.flow(batch.dt()));
-        }
-
-        fn tangent(&self, batch: &Batch<'_>, k: usize) -> [[f64; 6]; 6] {
-            self.constants.fluid.tangent(batch, k, self.flow(batch.dt()))
-        }
-    };
-}
-
 /// Constants of a Bingham fluid.
 pub struct Bingham {
     constants: Constants,
     viscosity: f64,
 }
 
-impl Bingham {
+impl FluidModel for Bingham {
     #[inline(always)]
-    fn flow(&self, dt: f64) -> Flow<Viscosity> {
+    fn fluid(&self) -> &Fluid {
+        &self.constants.fluid
+    }
+
+    #[inline(always)]
+    fn deviator(&self, dt: f64) -> impl Deviator {
         let Constants { shear_modulus, yield_stress, .. } = self.constants;
         let overstress = Viscosity::new(self.viscosity, shear_modulus * dt);
         Flow { shear_modulus, yield_stress, overstress }
@@ -109,6 +87,7 @@ impl Bingham {
 impl Model for Bingham {
     const NAME: &'static CStr = c"bingham";
     const SUMMARY: &'static CStr = c"Bingham fluid, elastic below its yield stress";
+    const REFERENCE: &'static CStr = REFERENCE;
     const PARAMETERS: &'static [Parameter] = &[
         fluid::BULK_MODULUS,
         SHEAR_MODULUS,
@@ -126,7 +105,7 @@ impl Model for Bingham {
         fluid::EXPONENT,
         fluid::ZERO_TENSION,
     ];
-    viscoplastic!(Bingham);
+    fluid_model!();
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [_, _, _, viscosity, _, _, _] = values[..] else {
@@ -143,9 +122,14 @@ pub struct HerschelBulkley {
     flow_index: f64,
 }
 
-impl HerschelBulkley {
+impl FluidModel for HerschelBulkley {
     #[inline(always)]
-    fn flow(&self, dt: f64) -> Flow<Power> {
+    fn fluid(&self) -> &Fluid {
+        &self.constants.fluid
+    }
+
+    #[inline(always)]
+    fn deviator(&self, dt: f64) -> impl Deviator {
         let Constants { shear_modulus, yield_stress, .. } = self.constants;
         let overstress = Power::new(self.consistency, self.flow_index, shear_modulus * dt);
         Flow { shear_modulus, yield_stress, overstress }
@@ -155,6 +139,7 @@ impl HerschelBulkley {
 impl Model for HerschelBulkley {
     const NAME: &'static CStr = c"herschel_bulkley";
     const SUMMARY: &'static CStr = c"Herschel-Bulkley fluid, elastic below its yield stress";
+    const REFERENCE: &'static CStr = REFERENCE;
     const PARAMETERS: &'static [Parameter] = &[
         fluid::BULK_MODULUS,
         SHEAR_MODULUS,
@@ -181,7 +166,7 @@ impl Model for HerschelBulkley {
         fluid::EXPONENT,
         fluid::ZERO_TENSION,
     ];
-    viscoplastic!(HerschelBulkley);
+    fluid_model!();
 
     fn new(values: &[f64]) -> Result<Self, String> {
         let [_, _, _, consistency, flow_index, _, _, _] = values[..] else {
