@@ -13,7 +13,7 @@ use lahar_plugin::elastic::{self, Elastic};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
-    elastic_model,
+    elastic_model, gap, plastic,
 };
 use std::ffi::CStr;
 
@@ -82,18 +82,7 @@ impl Model for DruckerPrager {
         .hard(0.0, f64::INFINITY)
         .advised(0.0, 1.0e8),
     ];
-    const STATES: &'static [State] = &[
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the deviatoric plastic strain",
-        ),
-        State::scalar(
-            c"opened_volumetric_strain",
-            c"-",
-            c"Volumetric strain that compression must undo before the point carries stress again",
-        ),
-    ];
+    const STATES: &'static [State] = &[plastic::EQUIVALENT_STRAIN, gap::OPENED_STRAIN];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Max, Transfer::Never];

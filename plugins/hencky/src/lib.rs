@@ -1,7 +1,7 @@
 //! Hencky elasticity: the Kirchhoff stress J σ = λ tr(ε) I + 2 μ ε of the logarithmic strain ε = ½ ln b, b = F Fᵀ.
 #![forbid(unsafe_code)]
 
-use lahar_plugin::elastic::lame;
+use lahar_plugin::elastic::{self, lame};
 use lahar_plugin::math::ln;
 use lahar_plugin::tensor::{determinant, is_finite, left_cauchy_green};
 use lahar_plugin::{
@@ -91,10 +91,7 @@ impl Model for Hencky {
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus at small strains")
             .typical(1.0e7)
             .hard(f64::MIN_POSITIVE, f64::INFINITY),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio at small strains")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.495),
+        elastic::POISSONS_RATIO.described(c"Poisson's ratio at small strains"),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::ENERGY).and(Output::STATUS);

@@ -12,7 +12,8 @@ use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic_model,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    elastic_model, plastic,
 };
 use std::ffi::CStr;
 
@@ -111,11 +112,7 @@ impl Model for JohnsonCook {
         .advised(0.0, 1.0),
     ];
     const STATES: &'static [State] = &[
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the plastic strain",
-        ),
+        plastic::EQUIVALENT_STRAIN,
         State::scalar(
             c"temperature_rise",
             c"K",

@@ -11,7 +11,8 @@ use lahar_plugin::elastic::{self, Elastic, stiffness};
 use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic_model,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    elastic_model, plastic,
 };
 use returning::Material;
 use std::ffi::CStr;
@@ -86,11 +87,7 @@ impl Model for MatsuokaNakai {
         .advised(0.0, 1.0e8),
     ];
     const STATES: &'static [State] = &[
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the deviatoric plastic strain",
-        ),
+        plastic::EQUIVALENT_STRAIN,
         State::scalar(
             c"opened_volumetric_strain",
             c"-",

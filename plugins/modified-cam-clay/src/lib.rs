@@ -12,7 +12,8 @@ mod swelling;
 use ellipse::{Ellipse, End, Step};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic,
+    plastic,
 };
 use std::ffi::CStr;
 use swelling::{SpecificVolume, Swelling};
@@ -74,7 +75,7 @@ impl Model for ModifiedCamClay {
         .typical(0.02)
         .hard(1e-7, 1e3)
         .advised(0.001, 0.09),
-        lahar_plugin::elastic::POISSONS_RATIO.advised(0.1, 0.45),
+        elastic::POISSONS_RATIO.advised(0.1, 0.45),
         Parameter::real(
             c"reference_void_ratio",
             c"e_N",
@@ -119,11 +120,7 @@ impl Model for ModifiedCamClay {
             c"Pa",
             c"Pressure of isotropic yield, at least minimum_pressure",
         ),
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the deviatoric plastic strain",
-        ),
+        plastic::EQUIVALENT_STRAIN,
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;

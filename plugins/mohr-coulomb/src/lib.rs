@@ -15,7 +15,7 @@ use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
-    elastic_model, gap,
+    elastic_model, gap, plastic,
 };
 use planes::Elasticity;
 use std::ffi::CStr;
@@ -120,11 +120,7 @@ impl Model for MohrCoulomb {
         .advised(0.0, 30.0),
     ];
     const STATES: &'static [State] = &[
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the deviatoric plastic strain",
-        ),
+        plastic::EQUIVALENT_STRAIN,
         State::scalar(
             c"opened_volumetric_strain",
             c"-",

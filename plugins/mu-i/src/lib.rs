@@ -10,7 +10,7 @@ use lahar_plugin::elastic::{self, Elastic, lame};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
-    elastic_model,
+    elastic_model, gap,
 };
 use std::ffi::CStr;
 
@@ -171,14 +171,11 @@ impl Model for MuI {
         c"Dry granular flow: mu(I) rheology, elastic at rest, open in tension";
     const REFERENCE: &'static CStr = c"Jop, Forterre, Pouliquen: A constitutive law for dense granular flows, Nature 441 (2006), doi:10.1038/nature04801; Dunatunga, Kamrin: J. Fluid Mech. 779 (2015), doi:10.1017/jfm.2015.383";
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus of the packing")
+        elastic::YOUNGS_MODULUS
+            .described(c"Young's modulus of the packing")
             .typical(1.0e6)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
             .advised(1.0e4, 1.0e9),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio of the packing")
-            .typical(0.3)
-            .hard(-0.999, 0.4999)
-            .advised(0.0, 0.45),
+        elastic::POISSONS_RATIO.described(c"Poisson's ratio of the packing").advised(0.0, 0.45),
         Parameter::real(c"static_friction", c"mu_s", c"-", c"Friction tau/p of slow flow")
             .typical(0.3819)
             .hard(0.0, f64::INFINITY)
@@ -216,11 +213,7 @@ impl Model for MuI {
             c"-",
             c"Sum of sqrt(2 de_p : de_p) of the deviatoric plastic strain",
         ),
-        State::scalar(
-            c"opened_volumetric_strain",
-            c"-",
-            c"Volumetric strain that compression must undo before the point carries stress again",
-        ),
+        gap::OPENED_STRAIN,
         State::scalar(c"inertial_number", c"-", c"I of the last step; 0 where nothing flows"),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];

@@ -13,7 +13,8 @@ use dual::Dual;
 use integrate::{LEAST_IMAGE, Sand};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
-    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
+    Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer, elastic, gap,
+    plastic,
 };
 use law::{Elasticity, Law};
 use std::ffi::CStr;
@@ -70,10 +71,7 @@ impl Model for NorSand {
         .default(1.0e5)
         .hard(1e-300, 1e300)
         .advised(1.0e3, 1.0e6),
-        Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
-            .typical(0.2)
-            .hard(0.0, 0.49)
-            .advised(0.05, 0.4),
+        elastic::POISSONS_RATIO.typical(0.2).hard(0.0, 0.49).advised(0.05, 0.4),
         Parameter::real(
             c"critical_stress_ratio",
             c"M_tc",
@@ -173,16 +171,8 @@ impl Model for NorSand {
     const STATES: &'static [State] = &[
         State::scalar(c"void_ratio", c"-", c"Volume of voids over that of grains"),
         State::scalar(c"image_pressure", c"Pa", c"Pressure of the image state"),
-        State::scalar(
-            c"equivalent_plastic_strain",
-            c"-",
-            c"Sum of sqrt(2/3 de_p : de_p) of the deviatoric plastic strain",
-        ),
-        State::scalar(
-            c"opened_volumetric_strain",
-            c"-",
-            c"Volumetric strain that compression must undo before the point carries stress again",
-        ),
+        plastic::EQUIVALENT_STRAIN,
+        gap::OPENED_STRAIN,
     ];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;

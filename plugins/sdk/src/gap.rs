@@ -1,5 +1,14 @@
 //! The memory of a point that has opened: compression must first undo the volumetric strain of opening.
 
+use crate::table::State;
+
+/// The volumetric strain [-] by which a point is open as a state variable.
+pub const OPENED_STRAIN: State = State::scalar(
+    c"opened_volumetric_strain",
+    c"-",
+    c"Volumetric strain that compression must undo before the point carries stress again",
+);
+
 /// The part of a strain increment that loads a point: all of it, unless the point was open by the volumetric strain `opened`.
 /// Then it is what remains when the gap has closed, or nothing while the gap stays. Written without branches.
 #[inline(always)]

@@ -23,6 +23,7 @@ pub mod isotropic;
 pub mod math;
 mod model;
 mod path;
+pub mod plastic;
 mod point;
 mod principal;
 pub mod radial;

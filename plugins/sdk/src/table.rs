@@ -163,6 +163,12 @@ impl Parameter {
         parameter.default(default as f64).hard(0.0, last)
     }
 
+    /// The same parameter with another description.
+    pub const fn described(mut self, text: &'static CStr) -> Self {
+        self.0.description = text.as_ptr();
+        self
+    }
+
     /// The same parameter with a default value, hence not required.
     pub const fn default(mut self, value: f64) -> Self {
         self.0.required = 0;

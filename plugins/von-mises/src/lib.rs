@@ -13,7 +13,7 @@ use lahar_plugin::radial::Trial;
 use lahar_plugin::tensor::is_finite;
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, Point, PointLaw, State, Transfer, Updated,
-    elastic_model,
+    elastic_model, plastic,
 };
 use std::ffi::CStr;
 
@@ -88,11 +88,7 @@ impl Model for VonMises {
         .hard(0.0, 1.0)
         .advised(0.0, 1.0),
     ];
-    const STATES: &'static [State] = &[State::scalar(
-        c"equivalent_plastic_strain",
-        c"-",
-        c"Sum of sqrt(2/3 de_p : de_p) of the plastic strain",
-    )];
+    const STATES: &'static [State] = &[plastic::EQUIVALENT_STRAIN];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
     const TRANSFER: &'static [Transfer] = &[Transfer::Mean];
