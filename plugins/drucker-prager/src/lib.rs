@@ -197,14 +197,11 @@ impl PointLaw<2> for DruckerPrager {
         let volumetric = trace(strain);
         let strain_deviator = deviator(strain);
 
-        // The part of the increment that loads the point: all of it, unless the point was open; then what remains when
-        // the gap has closed, or nothing. An open point starts without stress.
+        // An open point starts without stress.
         let was_open = opened0 != 0.0;
         let gap = opened0 + volumetric;
         let stays_open = was_open & (gap >= 0.0);
-        let after_closing = gap / volumetric;
-        let part = if was_open { after_closing } else { 1.0 };
-        let part = if stays_open { 0.0 } else { part };
+        let part = gap::loading_part(opened0, volumetric);
         let start = point.stress0.map(|x| if was_open { 0.0 } else { x });
         let free = (1.0 - part) * (2.0 / 3.0 * contract(strain_deviator, strain_deviator)).sqrt();
 

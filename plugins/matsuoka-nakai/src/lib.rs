@@ -8,7 +8,7 @@ mod returning;
 mod surface;
 
 use lahar_plugin::elastic::{self, Elastic, stiffness};
-use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
+use lahar_plugin::isotropic::{LARGEST_STRESS, compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
@@ -39,8 +39,6 @@ pub struct MatsuokaNakai {
     largest_shape: f64,
 }
 
-/// Stresses beyond this have no squares [Pa].
-const LARGEST_STRESS: f64 = 1e150;
 /// How far outside, relative to the stresses, still counts as inside: a stress that was returned to the surface stays there
 /// when nothing is strained.
 const INSIDE: f64 = 1e-11;

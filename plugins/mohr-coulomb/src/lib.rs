@@ -11,7 +11,7 @@ mod strength;
 
 use integrate::{Material, Step};
 use lahar_plugin::elastic::{self, Elastic, lame, stiffness};
-use lahar_plugin::isotropic::{compose, sorted_principal, tangent};
+use lahar_plugin::isotropic::{LARGEST_STRESS, compose, sorted_principal, tangent};
 use lahar_plugin::tensor::{contract, deviator, is_finite, trace};
 use lahar_plugin::{
     Batch, Driver, Input, Model, ModelTable, Parameter, PointStatus, State, Transfer,
@@ -42,9 +42,6 @@ pub struct MohrCoulomb {
     /// principal values.
     limits: [Strength; 2],
 }
-
-/// Stresses beyond this have no squares [Pa].
-const LARGEST_STRESS: f64 = 1e150;
 
 impl Model for MohrCoulomb {
     const NAME: &'static CStr = c"mohr_coulomb";

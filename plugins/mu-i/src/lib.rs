@@ -81,14 +81,12 @@ impl Elastic for MuI {
 impl MuI {
     #[inline(always)]
     fn trial(&self, stress0: [f64; 6], strain: [f64; 6], opened0: f64) -> Trial {
-        // An open point starts without stress; what is left of the increment when the gap has closed loads it.
+        // An open point starts without stress.
         let was_open = opened0 != 0.0;
         let volumetric = trace(strain);
         let gap = opened0 + volumetric;
         let stays_open = was_open & (gap >= 0.0);
-        let after_closing = gap / volumetric;
-        let part = if was_open { after_closing } else { 1.0 };
-        let part = if stays_open { 0.0 } else { part };
+        let part = gap::loading_part(opened0, volumetric);
         let kept = if was_open { 0.0 } else { 1.0 };
 
         let (old, new) = (deviator(stress0), deviator(strain));

@@ -2,6 +2,9 @@
 
 use crate::principal::principal_of_one;
 
+/// Stresses beyond this have no squares [Pa].
+pub const LARGEST_STRESS: f64 = 1e150;
+
 /// Principal values, the largest first, and in the columns of an orthogonal matrix their axes. `a` is xx, yy, zz, xy, yz, zx.
 pub fn sorted_principal(a: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
     let (values, axes) = principal_of_one(a);
