@@ -29,11 +29,7 @@ pub fn sample(n: usize) -> Result<Driver, String> {
         ("dilation_angle", 5.0),
     ];
     let mut driver = Driver::new(ModelTable::of::<DruckerPrager>().desc(), &named, n)?;
-    for k in 0..n {
-        let e = 1e-4 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 30.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
-    }
+    driver.set_samples(1e-4, [1.0, -2.0, 0.5, 30.0, -1.0, 0.0], [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
     Ok(driver)
 }
 

@@ -17,10 +17,8 @@ lahar_plugin::plugin!(c"org.lahar.ideal_gas", [IdealGas]);
 /// `n` points for a bench: air under compression and shear, different in each point. Made for steps of 1e-4 s.
 pub fn sample(n: usize) -> Result<Driver, String> {
     let mut driver = Driver::typical(ModelTable::of::<IdealGas>().desc(), &[], n)?;
+    driver.set_samples(1e-4, [-3.0, 1.0, -2.0, 1.0, -1.0, 0.0], [-1e5, -1e5, -1e5, 0.0, 0.0, 0.0]);
     for k in 0..n {
-        let e = 1e-4 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [-3.0 * e, e, -2.0 * e, e, -e, 0.0]);
-        driver.set_stress(k, [-1e5, -1e5, -1e5, 0.0, 0.0, 0.0]);
         driver.set_input(0, k, 1.2);
         driver.set_input(1, k, 2.1e5);
         driver.set_input(2, k, 0.01);

@@ -22,10 +22,8 @@ lahar_plugin::plugin!(c"org.lahar.johnson_cook", [JohnsonCook]);
 /// `n` points for a bench, copper in plastic flow at rates of 1e4 per second if a step takes 1e-7 s, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {
     let mut driver = Driver::typical(ModelTable::of::<JohnsonCook>().desc(), &[], n)?;
+    driver.set_samples(2e-4, [1.0, -2.0, 0.5, 3.0, -1.0, 0.0], [-1e7, -2e7, -1e7, 5e7, 0.0, 0.0]);
     for k in 0..n {
-        let e = 2e-4 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 3.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e7, -2e7, -1e7, 5e7, 0.0, 0.0]);
         driver.set_state(k, 0, 0.05 * (k % 5) as f64);
         driver.set_input(0, k, 8960.0);
     }

@@ -23,11 +23,7 @@ lahar_plugin::plugin!(c"org.lahar.modified_cam_clay", [ModifiedCamClay]);
 /// `n` points for a bench: normally consolidated and sheared, all of them in plastic flow, different in each point.
 pub fn sample(n: usize) -> Result<Driver, String> {
     let mut driver = Driver::typical(ModelTable::of::<ModifiedCamClay>().desc(), &[], n)?;
-    for k in 0..n {
-        let e = 1e-5 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 3.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e5, -2e5, -1e5, 1e3, 0.0, 0.0]);
-    }
+    driver.set_samples(1e-5, [1.0, -2.0, 0.5, 3.0, -1.0, 0.0], [-1e5, -2e5, -1e5, 1e3, 0.0, 0.0]);
     driver.init_state()?;
     Ok(driver)
 }

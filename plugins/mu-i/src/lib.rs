@@ -19,11 +19,7 @@ lahar_plugin::plugin!(c"org.lahar.mu_i", [MuI]);
 /// `n` points for a bench: sheared under pressure, all of them in flow, different in each point. Made for steps of 1e-4 s.
 pub fn sample(n: usize) -> Result<Driver, String> {
     let mut driver = Driver::typical(ModelTable::of::<MuI>().desc(), &[], n)?;
-    for k in 0..n {
-        let e = 1e-4 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 30.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
-    }
+    driver.set_samples(1e-4, [1.0, -2.0, 0.5, 30.0, -1.0, 0.0], [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
     Ok(driver)
 }
 

@@ -157,6 +157,16 @@ impl Driver {
         self.inputs[i].get_mut()[k] = value;
     }
 
+    /// Points for a bench: all get the start stress [Pa], and point `k` the strain increment `direction` times
+    /// `size` (1 + k mod 7) [-].
+    pub fn set_samples(&mut self, size: f64, direction: [f64; 6], stress: [f64; 6]) {
+        for k in 0..self.n {
+            let e = size * (1.0 + (k % 7) as f64);
+            self.set_strain_increment(k, direction.map(|part| part * e));
+            self.set_stress(k, stress);
+        }
+    }
+
     /// Stress of point `k` at the start of the next step [Pa].
     pub fn stress0(&self, k: usize) -> [f64; 6] {
         std::array::from_fn(|c| self.stress[0].get()[c * self.stride + k])

@@ -17,11 +17,11 @@ lahar_plugin::plugin!(c"org.lahar.viscoplastic_fluids", [Bingham, HerschelBulkle
 /// `n` points of the model `M` for a bench: all of them in flow, different in each point. Made for steps of 1e-4 s.
 pub fn sample<M: Model>(n: usize) -> Result<Driver, String> {
     let mut driver = Driver::typical(ModelTable::of::<M>().desc(), &[], n)?;
-    for k in 0..n {
-        let e = 1e-5 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, e, 3.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e3, -1e3, -1e3, 60.0, 30.0, -20.0]);
-    }
+    driver.set_samples(
+        1e-5,
+        [1.0, -2.0, 1.0, 3.0, -1.0, 0.0],
+        [-1e3, -1e3, -1e3, 60.0, 30.0, -20.0],
+    );
     Ok(driver)
 }
 

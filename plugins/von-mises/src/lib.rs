@@ -30,11 +30,7 @@ pub fn sample(voce_stress: f64, n: usize) -> Result<Driver, String> {
         ("voce_rate", 20.0),
     ];
     let mut driver = Driver::new(ModelTable::of::<VonMises>().desc(), &named, n)?;
-    for k in 0..n {
-        let e = 1e-3 * (1.0 + (k % 7) as f64);
-        driver.set_strain_increment(k, [e, -2.0 * e, 0.5 * e, 3.0 * e, -e, 0.0]);
-        driver.set_stress(k, [-1e7, -2e7, -1e7, 1e8, 0.0, 0.0]);
-    }
+    driver.set_samples(1e-3, [1.0, -2.0, 0.5, 3.0, -1.0, 0.0], [-1e7, -2e7, -1e7, 1e8, 0.0, 0.0]);
     Ok(driver)
 }
 
