@@ -29,23 +29,14 @@ fn driver(named: &[(&str, f64)], n: usize) -> Driver {
     try_driver(named, n).unwrap()
 }
 
-fn confined(mut d: Driver) -> Driver {
-    d.set_stress(0, [-CONFINEMENT, -CONFINEMENT, -CONFINEMENT, 0.0, 0.0, 0.0]);
-    d
-}
-
-/// Triaxial test: returns the deviator σ_xx - σ_zz (compression positive axial load) and the last strain increment.
+/// Triaxial test: returns the deviator σ_xx - σ_zz (positive in compression) and the last strain increment.
 fn triaxial(d: &mut Driver, axial: f64, steps: usize) -> (f64, [f64; 6]) {
-    let mut last = [0.0; 6];
-    for _ in 0..steps {
-        last = d.triaxial_step(0, axial, -CONFINEMENT, 1.0).unwrap();
-    }
-    let stress = d.stress0(0);
-    (stress[0] - stress[2], last)
+    let (stress, last) = d.triaxial_test(0, axial, CONFINEMENT, steps).unwrap();
+    (stress - CONFINEMENT, last)
 }
 
 fn strength(cone: f64, axial: f64) -> f64 {
-    let mut d = confined(driver(&[("cone", cone), ("dilation_angle", 0.0)], 1));
+    let mut d = driver(&[("cone", cone), ("dilation_angle", 0.0)], 1).confined(CONFINEMENT);
     triaxial(&mut d, axial, 60).0
 }
 
@@ -76,7 +67,8 @@ fn a_wrong_cone_misses_the_mohr_coulomb_strength() {
 #[test]
 fn plane_strain_cone_has_the_mohr_coulomb_strength_for_every_dilation() {
     let biaxial = |cone: f64, dilation: f64| {
-        let mut d = confined(driver(&[("cone", cone), ("dilation_angle", dilation)], 1));
+        let mut d =
+            driver(&[("cone", cone), ("dilation_angle", dilation)], 1).confined(CONFINEMENT);
         let mut last = [0.0; 6];
         for _ in 0..200 {
             last = d.biaxial_step(0, -2e-3, -CONFINEMENT, 1.0).unwrap();
@@ -97,7 +89,7 @@ fn plane_strain_cone_has_the_mohr_coulomb_strength_for_every_dilation() {
 
 #[test]
 fn slope_is_youngs_modulus_until_the_strength_is_reached() {
-    let mut d = confined(driver(&[], 1));
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
     let yield_strain = 234.641016e3 / E;
     let (q, _) = triaxial(&mut d, -yield_strain / 100.0, 99);
     assert!((q / (0.99 * yield_strain * E) - 1.0).abs() < 1e-8);
@@ -110,20 +102,20 @@ fn slope_is_youngs_modulus_until_the_strength_is_reached() {
 fn dilation_ratio_in_triaxial_compression() {
     // dε_v / dε_1 = -2 sin ψ / (1 - sin ψ), compression positive.
     for (psi, expected) in [(0.0, 0.0), (10.0, -0.420277), (15.0, -0.698396), (30.0, -2.0)] {
-        let mut d = confined(driver(&[("dilation_angle", psi)], 1));
+        let mut d = driver(&[("dilation_angle", psi)], 1).confined(CONFINEMENT);
         let (_, last) = triaxial(&mut d, -5e-4, 60);
         let ratio = trace(last) / last[2];
         assert!((ratio - expected).abs() < 1e-6, "psi = {psi}: {ratio}");
     }
     // Negative control: the dilation of the extension cone is another one.
-    let mut d = confined(driver(&[("dilation_angle", 30.0), ("cone", EXTENSION)], 1));
+    let mut d = driver(&[("dilation_angle", 30.0), ("cone", EXTENSION)], 1).confined(CONFINEMENT);
     let (_, last) = triaxial(&mut d, -5e-4, 60);
     assert!((trace(last) / last[2] + 2.0).abs() > 0.1);
 }
 
 #[test]
 fn plastic_strain_is_that_of_the_deviator() {
-    let mut d = confined(driver(&[], 1));
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
     let (_, last) = triaxial(&mut d, -5e-4, 60);
     let before = d.state0(0, 0);
     triaxial(&mut d, -5e-4, 1);
@@ -237,11 +229,11 @@ fn shearing_an_opened_point_needs_no_stress() {
 #[test]
 fn without_friction_the_strength_is_the_cohesion() {
     // Tresca in triaxial compression: q = 2 c.
-    let mut d = confined(driver(&[("friction_angle", 0.0)], 1));
+    let mut d = driver(&[("friction_angle", 0.0)], 1).confined(CONFINEMENT);
     let (q, _) = triaxial(&mut d, -5e-4, 60);
     assert!((q / 20.0e3 - 1.0).abs() < 1e-6);
     // Neither friction nor cohesion: no deviator at all, and no division by zero.
-    let mut d = confined(driver(&[("friction_angle", 0.0), ("cohesion", 0.0)], 1));
+    let mut d = driver(&[("friction_angle", 0.0), ("cohesion", 0.0)], 1).confined(CONFINEMENT);
     d.set_strain_increment(0, [1e-3, -1e-3, 0.0, 1e-3, 0.0, 0.0]);
     d.update(1.0).unwrap();
     let s = d.stress1(0);

@@ -12,24 +12,10 @@ use support::{BULK, E, NU, driver, try_driver};
 
 const CONFINEMENT: f64 = 100.0e3;
 
-fn confined(mut d: Driver, stress: f64) -> Driver {
-    d.set_stress(0, [-stress, -stress, -stress, 0.0, 0.0, 0.0]);
-    d
-}
-
-/// The axial stress (compression positive) of a triaxial test far beyond yield, and the last strain increment.
-fn triaxial(d: &mut Driver, axial: f64, confinement: f64, steps: usize) -> (f64, [f64; 6]) {
-    let mut last = [0.0; 6];
-    for _ in 0..steps {
-        last = d.triaxial_step(0, axial, -confinement, 1.0).unwrap();
-    }
-    (-d.stress0(0)[2], last)
-}
-
 /// The in-plane principal stresses at the end of a biaxial test without cohesion, largest over smallest.
 fn biaxial(phi: f64, psi: f64) -> f64 {
     let named = [("friction_angle", phi), ("dilation_angle", psi), ("cohesion", 0.0)];
-    let mut d = confined(driver(&named, 1), CONFINEMENT);
+    let mut d = driver(&named, 1).confined(CONFINEMENT);
     for _ in 0..400 {
         d.biaxial_step(0, -2e-3, -CONFINEMENT, 1.0).unwrap();
     }
@@ -42,11 +28,11 @@ fn biaxial(phi: f64, psi: f64) -> f64 {
 
 #[test]
 fn triaxial_strengths_are_those_of_mohr_coulomb() {
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
-    let (axial, _) = triaxial(&mut d, -1e-3, CONFINEMENT, 40);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
+    let (axial, _) = d.triaxial_test(0, -1e-3, CONFINEMENT, 40).unwrap();
     assert!((axial - 334_641.016_151_377_5).abs() < 1e-8 * CONFINEMENT, "{axial}");
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
-    let (axial, _) = triaxial(&mut d, 1e-3, CONFINEMENT, 40);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
+    let (axial, _) = d.triaxial_test(0, 1e-3, CONFINEMENT, 40).unwrap();
     assert!((axial - 21_786.327_949_540_8).abs() < 1e-8 * CONFINEMENT, "{axial}");
 }
 
@@ -71,9 +57,10 @@ fn both_meridians_are_met_for_random_parameters() {
         for (sign, expected) in
             [(-1.0, slope * confinement + root), (1.0, (confinement - root) / slope)]
         {
-            let mut d = confined(driver(&named, 1), confinement);
+            let mut d = driver(&named, 1).confined(confinement);
             let yield_strain = (expected - confinement).abs() / young;
-            let (axial, _) = triaxial(&mut d, sign * 0.13 * yield_strain, confinement, 16);
+            let (axial, _) =
+                d.triaxial_test(0, sign * 0.13 * yield_strain, confinement, 16).unwrap();
             let error = (axial - expected).abs() / expected.abs().max(confinement);
             assert!(error < 1e-8, "{n}: {named:?}: {axial} instead of {expected}");
         }
@@ -105,12 +92,12 @@ fn dilation_ratio_in_triaxial_compression_and_extension() {
     // with dε_q = |dε_1 - dε_3| 2/3. In compression this is the ratio of Mohr-Coulomb.
     for psi in [0.0, 10.0, 15.0, 30.0_f64] {
         let sin = psi.to_radians().sin();
-        let mut d = confined(driver(&[("dilation_angle", psi)], 1), CONFINEMENT);
-        let (_, last) = triaxial(&mut d, -1e-3, CONFINEMENT, 40);
+        let mut d = driver(&[("dilation_angle", psi)], 1).confined(CONFINEMENT);
+        let (_, last) = d.triaxial_test(0, -1e-3, CONFINEMENT, 40).unwrap();
         let ratio = trace(last) / last[2];
         assert!((ratio + 2.0 * sin / (1.0 - sin)).abs() < 1e-8, "psi = {psi}: {ratio}");
-        let mut d = confined(driver(&[("dilation_angle", psi)], 1), CONFINEMENT);
-        let (_, last) = triaxial(&mut d, 1e-3, CONFINEMENT, 40);
+        let mut d = driver(&[("dilation_angle", psi)], 1).confined(CONFINEMENT);
+        let (_, last) = d.triaxial_test(0, 1e-3, CONFINEMENT, 40).unwrap();
         let ratio = trace(last) / (2.0 / 3.0 * (last[2] - last[0]));
         let expected = 6.0 * sin / (3.0 - sin) * (3.0 - 0.5) / (3.0 + 0.5);
         assert!((ratio - expected).abs() < 1e-8, "psi = {psi}: {ratio} {expected}");
@@ -121,11 +108,11 @@ fn dilation_ratio_in_triaxial_compression_and_extension() {
 fn without_friction_the_surface_is_that_of_von_mises() {
     let named = [("friction_angle", 0.0), ("tension_cutoff", 1e6)];
     for axial in [-1e-3, 1e-3] {
-        let mut d = confined(driver(&named, 1), CONFINEMENT);
-        let (stress, _) = triaxial(&mut d, axial, CONFINEMENT, 40);
+        let mut d = driver(&named, 1).confined(CONFINEMENT);
+        let (stress, _) = d.triaxial_test(0, axial, CONFINEMENT, 40).unwrap();
         assert!(((stress - CONFINEMENT).abs() - 20.0e3).abs() < 1e-8 * CONFINEMENT);
     }
-    let mut d = confined(driver(&named, 1), CONFINEMENT);
+    let mut d = driver(&named, 1).confined(CONFINEMENT);
     for _ in 0..300 {
         d.biaxial_step(0, -1e-3, -CONFINEMENT, 1.0).unwrap();
     }
@@ -133,7 +120,7 @@ fn without_friction_the_surface_is_that_of_von_mises() {
     assert!((s[0] - s[1] - 40.0e3 / 3.0_f64.sqrt()).abs() < 1e-8 * CONFINEMENT);
     // Neither friction nor cohesion: no deviator at all, and no division by zero.
     let named = [("friction_angle", 0.0), ("cohesion", 0.0)];
-    let mut d = confined(driver(&named, 1), CONFINEMENT);
+    let mut d = driver(&named, 1).confined(CONFINEMENT);
     d.set_strain_increment(0, [1e-3, -1e-3, 0.0, 1e-3, 0.0, 0.0]);
     d.update(1.0).unwrap();
     let s = d.stress1(0);
@@ -237,7 +224,7 @@ fn no_strain_leaves_a_returned_stress_as_it_is() {
 
 #[test]
 fn principal_axes_turn_with_the_strain() {
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
     for _ in 0..100 {
         d.set_strain_increment(0, [0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]);
         d.update(1.0).unwrap();

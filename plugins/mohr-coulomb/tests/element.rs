@@ -12,27 +12,13 @@ use support::{BULK, E, NU, driver, try_driver};
 
 const CONFINEMENT: f64 = 100.0e3;
 
-fn confined(mut d: Driver, stress: f64) -> Driver {
-    d.set_stress(0, [-stress, -stress, -stress, 0.0, 0.0, 0.0]);
-    d
-}
-
-/// The axial stress (compression positive) of a triaxial test far beyond yield, and the last strain increment.
-fn triaxial(d: &mut Driver, axial: f64, confinement: f64, steps: usize) -> (f64, [f64; 6]) {
-    let mut last = [0.0; 6];
-    for _ in 0..steps {
-        last = d.triaxial_step(0, axial, -confinement, 1.0).unwrap();
-    }
-    (-d.stress0(0)[2], last)
-}
-
 #[test]
 fn triaxial_strengths_are_those_of_the_reference() {
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
-    let (axial, _) = triaxial(&mut d, -1e-3, CONFINEMENT, 40);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
+    let (axial, _) = d.triaxial_test(0, -1e-3, CONFINEMENT, 40).unwrap();
     assert!((axial - 334_641.016_151_377_5).abs() < 1e-8 * CONFINEMENT, "{axial}");
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
-    let (axial, _) = triaxial(&mut d, 1e-3, CONFINEMENT, 40);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
+    let (axial, _) = d.triaxial_test(0, 1e-3, CONFINEMENT, 40).unwrap();
     assert!((axial - 21_786.327_949_540_8).abs() < 1e-8 * CONFINEMENT, "{axial}");
 }
 
@@ -58,9 +44,10 @@ fn both_meridians_are_met_for_random_parameters() {
         for (sign, expected) in
             [(-1.0, slope * confinement + root), (1.0, (confinement - root) / slope)]
         {
-            let mut d = confined(driver(&named, 1), confinement);
+            let mut d = driver(&named, 1).confined(confinement);
             let yield_strain = (expected - confinement).abs() / young;
-            let (axial, _) = triaxial(&mut d, sign * 0.13 * yield_strain, confinement, 16);
+            let (axial, _) =
+                d.triaxial_test(0, sign * 0.13 * yield_strain, confinement, 16).unwrap();
             let error = (axial - expected).abs() / expected.abs().max(confinement);
             assert!(error < 1e-8, "{n}: {named:?}: {axial} instead of {expected}");
         }
@@ -69,12 +56,12 @@ fn both_meridians_are_met_for_random_parameters() {
 
 #[test]
 fn slope_is_youngs_modulus_until_the_strength_is_reached() {
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
     let yield_strain = 234.641016e3 / E;
-    let (axial, _) = triaxial(&mut d, -yield_strain / 100.0, CONFINEMENT, 99);
+    let (axial, _) = d.triaxial_test(0, -yield_strain / 100.0, CONFINEMENT, 99).unwrap();
     assert!(((axial - CONFINEMENT) / (0.99 * yield_strain * E) - 1.0).abs() < 1e-8);
     assert_eq!(d.state0(0, 0), 0.0);
-    triaxial(&mut d, -yield_strain / 100.0, CONFINEMENT, 2);
+    d.triaxial_test(0, -yield_strain / 100.0, CONFINEMENT, 2).unwrap();
     assert!(d.state0(0, 0) > 0.0);
 }
 
@@ -87,8 +74,8 @@ fn dilation_ratio_in_triaxial_compression_and_extension() {
         for (axial, expected) in
             [(-1e-3, -2.0 * sin / (1.0 - sin)), (1e-3, 2.0 * sin / (1.0 + sin))]
         {
-            let mut d = confined(driver(&[("dilation_angle", psi)], 1), CONFINEMENT);
-            let (_, last) = triaxial(&mut d, axial, CONFINEMENT, 40);
+            let mut d = driver(&[("dilation_angle", psi)], 1).confined(CONFINEMENT);
+            let (_, last) = d.triaxial_test(0, axial, CONFINEMENT, 40).unwrap();
             let ratio = trace(last) / last[2];
             assert!((ratio - expected).abs() < 1e-8, "psi = {psi}: {ratio}");
         }
@@ -98,7 +85,7 @@ fn dilation_ratio_in_triaxial_compression_and_extension() {
 #[test]
 fn plane_strain_strength_and_dilation_are_those_of_the_plane() {
     for psi in [0.0, 10.0, 30.0_f64] {
-        let mut d = confined(driver(&[("dilation_angle", psi)], 1), CONFINEMENT);
+        let mut d = driver(&[("dilation_angle", psi)], 1).confined(CONFINEMENT);
         let mut last = [0.0; 6];
         for _ in 0..200 {
             last = d.biaxial_step(0, -1e-3, -CONFINEMENT, 1.0).unwrap();
@@ -115,12 +102,12 @@ fn plane_strain_strength_and_dilation_are_those_of_the_plane() {
 fn without_friction_the_strength_is_the_cohesion() {
     for axial in [-1e-3, 1e-3] {
         let named = [("friction_angle", 0.0), ("tension_cutoff", 1e6)];
-        let mut d = confined(driver(&named, 1), CONFINEMENT);
-        let (stress, _) = triaxial(&mut d, axial, CONFINEMENT, 40);
+        let mut d = driver(&named, 1).confined(CONFINEMENT);
+        let (stress, _) = d.triaxial_test(0, axial, CONFINEMENT, 40).unwrap();
         assert!(((stress - CONFINEMENT).abs() - 20.0e3).abs() < 1e-8 * CONFINEMENT);
     }
     // Neither friction nor cohesion: no deviator at all, and no division by zero.
-    let mut d = confined(driver(&[("friction_angle", 0.0), ("cohesion", 0.0)], 1), CONFINEMENT);
+    let mut d = driver(&[("friction_angle", 0.0), ("cohesion", 0.0)], 1).confined(CONFINEMENT);
     d.set_strain_increment(0, [1e-3, -1e-3, 0.0, 1e-3, 0.0, 0.0]);
     d.update(1.0).unwrap();
     let s = d.stress1(0);
@@ -246,7 +233,7 @@ fn no_strain_leaves_a_returned_stress_as_it_is() {
 #[test]
 fn principal_axes_turn_with_the_strain() {
     // A sheared point under pressure: the stress deviator of simple shear is at the strength of the plane.
-    let mut d = confined(driver(&[], 1), CONFINEMENT);
+    let mut d = driver(&[], 1).confined(CONFINEMENT);
     for _ in 0..100 {
         d.set_strain_increment(0, [0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]);
         d.update(1.0).unwrap();

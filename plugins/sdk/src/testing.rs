@@ -104,6 +104,57 @@ impl Driver {
         Ok(TangentComparison { tangent, errors, bends })
     }
 
+    /// The same driver with all points under an isotropic pressure [Pa].
+    pub fn confined(mut self, pressure: f64) -> Self {
+        for k in 0..self.n() {
+            self.set_stress(k, [-pressure, -pressure, -pressure, 0.0, 0.0, 0.0]);
+        }
+        self
+    }
+
+    /// A triaxial test of point `k`: so many steps of the axial strain increment along z [-] under a confining pressure
+    /// [Pa]. Returns the axial stress at the end, compression positive [Pa], and the last strain increment [-].
+    pub fn triaxial_test(
+        &mut self,
+        k: usize,
+        axial_strain: f64,
+        confinement: f64,
+        steps: usize,
+    ) -> Result<(f64, [f64; 6]), String> {
+        let mut last = [0.0; 6];
+        for _ in 0..steps {
+            last = self.triaxial_step(k, axial_strain, -confinement, 1.0)?;
+        }
+        Ok((-self.stress0(k)[2], last))
+    }
+
+    /// One step of such a test whose lateral strain is found with the model's own tangent: it fails if the tangent does not
+    /// lead to the confining pressure within 30 steps, to 1e-10 of it. Returns the strain increment [-].
+    pub fn triaxial_step_by_tangent(
+        &mut self,
+        k: usize,
+        axial_strain: f64,
+        confinement: f64,
+    ) -> Result<[f64; 6], String> {
+        let mut lateral = -0.3 * axial_strain;
+        for _ in 0..30 {
+            let strain = [lateral, lateral, axial_strain, 0.0, 0.0, 0.0];
+            self.set_strain_increment(k, strain);
+            self.update(1.0)?;
+            if self.status_of(k) != LAHAR_POINT_OK {
+                return Err(format!("the point has the status {}", self.status_of(k)));
+            }
+            let residual = self.stress1(k)[0] + confinement;
+            if residual.abs() < 1e-10 * confinement {
+                self.commit_point(k);
+                return Ok(strain);
+            }
+            let tangent = self.tangent(k, 1.0)?;
+            lateral -= residual / (tangent[0][0] + tangent[0][1]);
+        }
+        Err("the tangent does not lead to the confining pressure".into())
+    }
+
     /// The points whose stress or whose first `states` state components the last update has changed by a bit. After an update
     /// without strain there should be none.
     pub fn changed_points(&self, states: usize) -> Vec<usize> {

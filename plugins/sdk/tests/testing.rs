@@ -107,3 +107,18 @@ fn principal_axes_put_the_tensor_together_again() {
 fn diagonal(values: [f64; 3]) -> Matrix3<f64> {
     Matrix3::from_diagonal(&values.into())
 }
+
+#[test]
+fn triaxial_tests_keep_the_confining_pressure_by_differences_and_by_the_tangent() {
+    let (p, axial) = (5.0e2, -1e-5);
+    let mut d = driver(2).confined(p);
+    let (stress, last) = d.triaxial_test(1, axial, p, 3).unwrap();
+    // Lateral strains of this model have no stress along the axis.
+    assert!((stress - p + 3.0 * 2.0 * SHEAR * axial).abs() < 1e-9 * p, "{stress}");
+    assert_eq!((last[2], d.state0(1, 0), d.state0(0, 0)), (axial, 3.0, 0.0));
+    let strain = d.triaxial_step_by_tangent(1, axial, p).unwrap();
+    assert!((0..2).all(|c| strain[c].abs() < 1e-12) && d.state0(1, 0) == 4.0, "{strain:?}");
+    // A pressure beyond the strength in tension is one to which the tangent never leads.
+    let error = d.triaxial_step_by_tangent(1, axial, -2.0 * STRENGTH).unwrap_err();
+    assert!(error.contains("tangent") || error.contains("status"), "{error}");
+}

@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use lahar_model_modified_cam_clay::ModifiedCamClay;
-use lahar_plugin::abi::{LAHAR_POINT_FAILED, LAHAR_POINT_OK};
+use lahar_plugin::abi::LAHAR_POINT_FAILED;
 pub use lahar_plugin::testing::invariants;
 use lahar_plugin::testing::with;
 use lahar_plugin::{Driver, ModelTable};
@@ -29,10 +29,7 @@ pub fn driver(named: &[(&str, f64)], n: usize) -> Driver {
 
 /// Points under the isotropic pressure `p0` [Pa].
 pub fn consolidated(named: &[(&str, f64)], p0: f64, n: usize) -> Driver {
-    let mut d = driver(named, n);
-    for k in 0..n {
-        d.set_stress(k, [-p0, -p0, -p0, 0.0, 0.0, 0.0]);
-    }
+    let mut d = driver(named, n).confined(p0);
     d.init_state().unwrap();
     d
 }
@@ -51,20 +48,7 @@ pub fn one_step(d: &mut Driver, strain: [f64; 6]) {
     d.commit();
 }
 
-/// One step with an axial strain along z and the lateral stress kept, by Newton's method with the model's tangent.
+/// One step of a triaxial test of point 0 with the model's tangent, which must succeed.
 pub fn confined_step(d: &mut Driver, axial: f64, confinement: f64) {
-    let mut lateral = -0.3 * axial;
-    for _ in 0..30 {
-        d.set_strain_increment(0, [lateral, lateral, axial, 0.0, 0.0, 0.0]);
-        d.update(1.0).unwrap();
-        assert_eq!(d.status_of(0), LAHAR_POINT_OK);
-        let residual = d.stress1(0)[0] + confinement;
-        if residual.abs() < 1e-10 * confinement {
-            d.commit();
-            return;
-        }
-        let tangent = d.tangent(0, 1.0).unwrap();
-        lateral -= residual / (tangent[0][0] + tangent[0][1]);
-    }
-    panic!("the lateral stress is not reached");
+    d.triaxial_step_by_tangent(0, axial, confinement).unwrap();
 }

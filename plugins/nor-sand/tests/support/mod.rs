@@ -38,10 +38,7 @@ pub fn driver(named: &[(&str, f64)], n: usize) -> Driver {
 pub fn consolidated(named: &[(&str, f64)], p0: f64, psi: f64, n: usize) -> Driver {
     let mut all = vec![("initial_state_parameter", psi)];
     all.extend(named);
-    let mut d = driver(&all, n);
-    for k in 0..n {
-        d.set_stress(k, [-p0, -p0, -p0, 0.0, 0.0, 0.0]);
-    }
+    let mut d = driver(&all, n).confined(p0);
     d.init_state().unwrap();
     d
 }
@@ -91,22 +88,7 @@ pub fn one_step(d: &mut Driver, strain: [f64; 6]) {
     d.commit();
 }
 
-/// One step with an axial strain along z and the lateral stress kept, by Newton's method with the model's tangent.
-/// Returns the strain.
+/// One step of a triaxial test of point 0 with the model's tangent, which must succeed. Returns the strain.
 pub fn confined_step(d: &mut Driver, axial: f64, confinement: f64) -> [f64; 6] {
-    let mut lateral = -0.3 * axial;
-    for _ in 0..30 {
-        let strain = [lateral, lateral, axial, 0.0, 0.0, 0.0];
-        d.set_strain_increment(0, strain);
-        d.update(1.0).unwrap();
-        assert_eq!(d.status_of(0), LAHAR_POINT_OK);
-        let residual = d.stress1(0)[0] + confinement;
-        if residual.abs() < 1e-9 * confinement {
-            d.commit();
-            return strain;
-        }
-        let tangent = d.tangent(0, 1.0).unwrap();
-        lateral -= residual / (tangent[0][0] + tangent[0][1]);
-    }
-    panic!("the lateral stress is not reached");
+    d.triaxial_step_by_tangent(0, axial, confinement).unwrap()
 }
