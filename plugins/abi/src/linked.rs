@@ -2,7 +2,7 @@
 
 use crate::lahar_plugin_desc;
 
-/// The table of a linked plugin, of which somebody has promised that it follows the ABI.
+/// The table of a linked plugin that is guaranteed to follow the ABI, see [`LinkedPlugin::new`].
 #[derive(Clone, Copy)]
 pub struct LinkedPlugin(&'static lahar_plugin_desc);
 

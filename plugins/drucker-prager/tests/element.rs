@@ -29,7 +29,7 @@ fn driver(named: &[(&str, f64)], n: usize) -> Driver {
     try_driver(named, n).unwrap()
 }
 
-/// Triaxial test: returns the deviator σ_xx - σ_zz (positive in compression) and the last strain increment.
+/// Triaxial test: returns σ_xx - σ_zz, positive in compression, and the last strain increment.
 fn triaxial(d: &mut Driver, axial: f64, steps: usize) -> (f64, [f64; 6]) {
     let (stress, last) = d.triaxial_test(0, axial, CONFINEMENT, steps).unwrap();
     (stress - CONFINEMENT, last)

@@ -42,7 +42,7 @@ struct Step<'m> {
     dt: f64,
 }
 
-/// What a point has and meets in a step.
+/// A point at the start of a step, and its strain increment.
 #[derive(Clone, Copy)]
 struct Before {
     strain: [f64; 6],
@@ -52,7 +52,7 @@ struct Before {
     length: f64,
 }
 
-/// What becomes of it.
+/// The point at the end of the step.
 struct After {
     /// e, less than 0 if the gas would do more work than it has energy [J/kg]
     energy: f64,

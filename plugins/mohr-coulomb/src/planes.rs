@@ -174,7 +174,7 @@ fn onto(
 
 impl Returned {
     /// The same; exactly at the cut-off in all directions if the smallest stress is. Without cohesion shear planes too end
-    /// there, so the set does not tell.
+    /// there, so the set does not show it.
     fn at_apex(mut self, strength: &Strength, round_off: f64) -> Self {
         self.is_open = self.stress[2] >= strength.tension - round_off;
         if self.is_open {

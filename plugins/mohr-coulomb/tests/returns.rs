@@ -277,7 +277,8 @@ fn tangents_are_those_of_differences_on_planes_edges_and_vertices() {
 
 #[test]
 fn the_tangent_of_a_shear_plane_is_not_the_elastic_one() {
-    // Negative control of the test above: what it compares tells apart an elastic tangent and one without the turning of axes.
+    // Negative control of the test above: an elastic tangent and one without the turning of axes
+    // are found to be wrong.
     let mut d = driver(&[("dilation_angle", 10.0)], 1);
     d.set_stress(0, [-1e5, -1e5, -1e5, 0.0, 0.0, 0.0]);
     let strain = [2e-2, -1e-2, 0.0, 1e-2, 5e-3, 0.0];

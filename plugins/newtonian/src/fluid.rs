@@ -83,8 +83,8 @@ pub trait Deviator: Copy {
     }
 }
 
-/// A model that is a [`Fluid`] with a [`Deviator`]. In its `impl Model`, [`fluid_model!`](crate::fluid_model) writes what
-/// follows from both.
+/// A model that is a [`Fluid`] with a [`Deviator`]. In its `impl Model`,
+/// [`fluid_model!`](crate::fluid_model) writes what follows from both.
 pub trait FluidModel {
     /// The pressure law.
     fn fluid(&self) -> &Fluid;

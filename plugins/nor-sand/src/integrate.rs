@@ -208,7 +208,7 @@ impl Law {
         forwards && place && lnp - image <= 1.0 + 1e-9
     }
 
-    /// One part of an increment; nothing if it should be smaller. The flag tells that the flow rule was given up.
+    /// One part of an increment; nothing if it should be smaller. The flag is set where the flow rule was given up.
     fn advance_part<T: Real>(
         &self,
         mut sand: Sand<T>,

@@ -1,4 +1,4 @@
-//! The safe picture of `lahar_stress_batch`.
+//! The safe view of `lahar_stress_batch`.
 
 use crate::model::Model;
 use crate::table::{Kinematics, state_components};
@@ -243,7 +243,7 @@ impl<'a> Batch<'a> {
         raw: *const lahar_stress_batch,
         call: Call,
     ) -> Result<Batch<'a>, String> {
-        // SAFETY: the caller vouches for a non-NULL pointer.
+        // SAFETY: the caller guarantees that a pointer that is not NULL is valid.
         let raw = unsafe { raw.as_ref() }.ok_or("the batch is NULL")?;
         if (raw.struct_size as usize) < size_of::<lahar_stress_batch>() {
             return Err(format!("the batch has {} bytes, too few", raw.struct_size));
@@ -339,7 +339,7 @@ unsafe fn read<'a>(base: *const f64, length: usize) -> &'a [f64] {
     if base.is_null() {
         return &[];
     }
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { slice::from_raw_parts(base, length) }
 }
 
@@ -350,7 +350,7 @@ unsafe fn write<'a, T>(base: *mut T, length: usize) -> &'a mut [T] {
     if base.is_null() {
         return &mut [];
     }
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { slice::from_raw_parts_mut(base, length) }
 }
 

@@ -157,8 +157,8 @@ impl Driver {
         self.inputs[i].get_mut()[k] = value;
     }
 
-    /// Points for a bench: all get the start stress [Pa], and point `k` the strain increment `direction` times
-    /// `size` (1 + k mod 7) [-].
+    /// Points for a bench: all get the start stress [Pa], and point `k` the strain increment
+    /// `direction` times `size` (1 + k mod 7) [-].
     pub fn set_samples(&mut self, size: f64, direction: [f64; 6], stress: [f64; 6]) {
         for k in 0..self.n {
             let e = size * (1.0 + (k % 7) as f64);
@@ -469,7 +469,7 @@ unsafe fn table<'a, T>(base: *const T, count: u32) -> &'a [T] {
     if base.is_null() {
         return &[];
     }
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { std::slice::from_raw_parts(base, count as usize) }
 }
 

@@ -1,4 +1,4 @@
-//! Isotropic elasticity with constant moduli: parameters, formulas, and what its models have in common.
+//! Isotropic elasticity with constant moduli: parameters, formulas, and what its models share.
 
 use crate::table::Parameter;
 use crate::tensor::{contract, deviator, trace};
@@ -50,7 +50,8 @@ pub fn energy([lambda, mu]: [f64; 2], stress: [f64; 6]) -> f64 {
     0.5 * mean * mean / (lambda + 2.0 / 3.0 * mu) + 0.25 * contract(s, s) / mu
 }
 
-/// The stress [Pa] after a strain increment [-] of isotropic elasticity with Lamé's constants [Pa], from a start stress [Pa].
+/// The stress [Pa] of isotropic elasticity with Lamé's constants [Pa] after a strain increment [-],
+/// from a start stress [Pa].
 #[inline(always)]
 pub fn stress([lambda, mu]: [f64; 2], stress0: [f64; 6], strain: [f64; 6]) -> [f64; 6] {
     let volumetric = lambda * trace(strain);
@@ -85,8 +86,8 @@ pub trait Elastic {
     }
 }
 
-/// Writes `wave_speed`, `stored_energy` and `HAS_STORED_ENERGY` in the `impl Model` of a type that is
-/// [`Elastic`](crate::elastic::Elastic). The first of its inputs must be the density.
+/// Writes `wave_speed`, `stored_energy` and `HAS_STORED_ENERGY` in the `impl Model` of a type that
+/// is [`Elastic`](crate::elastic::Elastic). The first of its inputs must be the density.
 #[macro_export]
 macro_rules! elastic_model {
     () => {

@@ -20,7 +20,8 @@ pub trait Model: Sized + Send + Sync + 'static {
     const STATES: &'static [State] = &[];
     /// The wanted inputs, at most [`MAX_INPUTS`](crate::MAX_INPUTS); their order is that of [`Batch::input`].
     const INPUTS: &'static [Input] = &[];
-    /// The outputs beside the stress, by default wave speed and status. [`Output::WAVE_SPEED`] is mandatory.
+    /// The outputs beside the stress, by default wave speed and status.
+    /// [`Output::WAVE_SPEED`] is mandatory.
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::STATUS);
     /// Whether [`Model::tangent`] is written.
     const HAS_TANGENT: bool = false;

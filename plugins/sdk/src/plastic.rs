@@ -1,4 +1,4 @@
-//! Plasticity: what its models have in common.
+//! Plasticity: what its models share.
 
 use crate::table::State;
 

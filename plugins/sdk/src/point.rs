@@ -50,8 +50,8 @@ pub struct Updated<const S: usize> {
 }
 
 impl<const S: usize> Updated<S> {
-    /// A point with a stress [Pa], a state and a wave speed [m/s], without diffusivity and energy. It has failed unless it
-    /// is `sane` and all of its values are finite.
+    /// A point with a stress [Pa], a state and a wave speed [m/s], without diffusivity and energy.
+    /// It has failed unless it is `sane` and all of its values are finite.
     #[inline(always)]
     pub fn checked(stress1: [f64; 6], state1: [f64; S], wave_speed: f64, sane: bool) -> Self {
         let sane = is_finite(stress1) & is_finite(state1) & is_finite([wave_speed]) & sane;

@@ -364,7 +364,7 @@ unsafe extern "C" fn get_extension<M: Model>(
     }
 }
 
-/// Pointer to the first element as the C type that `T` is a transparent picture of; NULL for an empty table.
+/// Pointer to the first element as the C type that `T` transparently wraps; NULL for an empty table.
 const fn table_of<T, C>(items: &'static [T]) -> *const C {
     assert!(size_of::<T>() == size_of::<C>() && align_of::<T>() == align_of::<C>());
     if items.is_empty() { ptr::null() } else { items.as_ptr().cast() }

@@ -112,8 +112,9 @@ impl Driver {
         self
     }
 
-    /// A triaxial test of point `k`: so many steps of the axial strain increment along z [-] under a confining pressure
-    /// [Pa]. Returns the axial stress at the end, compression positive [Pa], and the last strain increment [-].
+    /// A triaxial test of point `k`: `steps` steps of the axial strain increment along z [-] under a
+    /// confining pressure [Pa]. Returns the axial stress at the end, compression positive [Pa], and
+    /// the last strain increment [-].
     pub fn triaxial_test(
         &mut self,
         k: usize,
@@ -128,8 +129,9 @@ impl Driver {
         Ok((-self.stress0(k)[2], last))
     }
 
-    /// One step of such a test whose lateral strain is found with the model's own tangent: it fails if the tangent does not
-    /// lead to the confining pressure within 30 steps, to 1e-10 of it. Returns the strain increment [-].
+    /// One step of such a test whose lateral strain is found with the model's own tangent. Returns
+    /// the strain increment [-]. Error: the tangent does not lead to the confining pressure, to
+    /// 1e-10 of it, within 30 iterations.
     pub fn triaxial_step_by_tangent(
         &mut self,
         k: usize,

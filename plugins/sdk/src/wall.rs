@@ -26,7 +26,7 @@ pub unsafe fn enter(
     plugin: &'static Plugin,
 ) -> *const lahar_plugin_desc {
     std::panic::set_hook(Box::new(|_| ()));
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     if let Some(host) = unsafe { host.as_ref() } {
         set_host(host);
     }
@@ -41,7 +41,7 @@ pub(crate) fn set_host(host: &'static lahar_host_api) {
 }
 
 fn host() -> Option<&'static lahar_host_api> {
-    // SAFETY: the pointer is NULL or came through `set_host`, whose callers vouch for its life.
+    // SAFETY: the pointer is NULL or came through `set_host`, whose callers give one that is never dropped.
     unsafe { HOST.load(Ordering::Acquire).as_ref() }
 }
 
@@ -221,7 +221,7 @@ unsafe fn output<'a>(base: *mut f64, length: usize, n: usize) -> Result<&'a mut 
     match (n, base.is_null()) {
         (0, _) => Ok(&mut []),
         (_, true) => Err("the place for the result is NULL".into()),
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         _ => Ok(unsafe { slice::from_raw_parts_mut(base, length) }),
     }
 }
@@ -260,9 +260,9 @@ unsafe fn with<M: Model>(
     call: Call,
     body: impl FnOnce(&M, &mut Batch<'_>) -> Result<(), String>,
 ) -> Result<(), String> {
-    // SAFETY: told by the caller; instances are only read, and `M` is `Sync`.
+    // SAFETY: guaranteed by the caller; instances are only read, and `M` is `Sync`.
     let model = unsafe { instance.cast::<M>().as_ref() }.ok_or("the instance is NULL")?;
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     let mut batch = unsafe { Batch::from_raw::<M>(batch, call) }?;
     body(model, &mut batch)
 }
@@ -281,7 +281,7 @@ unsafe fn parameter_values<'a, M: Model>(
     match (wanted, values.is_null()) {
         (0, _) => Ok(&[]),
         (_, true) => Err("the parameter values are NULL".into()),
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         _ => Ok(unsafe { slice::from_raw_parts(values, wanted) }),
     }
 }

@@ -116,7 +116,7 @@ impl PointLaw<1> for OwnMaterial {
             stress[c] -= share * s[c];
         }
         let state1 = [point.state0[0] + share * mises / (3.0 * self.shear_modulus)];
-        // failed if one of the values is not finite; more that must hold stands in the place of `true`
+        // a point with a value that is not finite fails; further conditions replace `true`
         Updated::checked(stress, state1, self.speed(point.inputs[0]), true)
     }
 }

@@ -11,7 +11,7 @@ const ABA_PARAM: &str = include_str!("../share/ABA_PARAM.INC");
 const VABA_PARAM: &str = include_str!("../share/vaba_param.inc");
 const UTILITIES: &str = include_str!("../share/utilities.c");
 
-/// Sources name them in either case; file systems tell the cases apart.
+/// Sources name them in either case; file systems distinguish the cases.
 const INCLUDES: [(&str, &str); 6] = [
     ("ABA_PARAM.INC", ABA_PARAM),
     ("aba_param.inc", ABA_PARAM),
@@ -89,7 +89,8 @@ fn folder() -> Result<TempDir, String> {
     Ok(folder)
 }
 
-/// Compiles and links the sources with the utility routines. Errors tell what the compiler said and what to do.
+/// Compiles and links the sources with the utility routines. Errors contain the output of the
+/// compiler and what to do.
 pub fn build(order: &Order) -> Result<Built, String> {
     let folder = folder()?;
     let folder = folder.path();

@@ -1,4 +1,4 @@
-//! The functions of the tables, and the safe picture of a batch.
+//! The functions of the tables, and the safe view of a batch.
 
 use crate::describe::{Adapted, Floor};
 use crate::fpenv::Environment;
@@ -47,7 +47,7 @@ impl Instance {
     }
 }
 
-/// The first so many values as the first of all says; the others must have been left alone.
+/// As many values as the first of all counts; the others must have been left alone.
 fn counted(values: &[f64]) -> Result<&[f64], String> {
     let (props, others) = values[1..].split_at(values[0] as usize);
     match others.iter().position(|value| *value != 0.0) {
@@ -109,13 +109,13 @@ pub unsafe extern "C" fn init_state(
     instance: *const c_void,
     batch: *const lahar_stress_batch,
 ) -> i32 {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { run(instance, batch, Call::InitState) }
 }
 
 /// One step.
 pub unsafe extern "C" fn update(instance: *const c_void, batch: *const lahar_stress_batch) -> i32 {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { run(instance, batch, Call::Update) }
 }
 
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn wave_speed(
     instance: *const c_void,
     batch: *const lahar_stress_batch,
 ) -> i32 {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { run(instance, batch, Call::WaveSpeed) }
 }
 
@@ -133,10 +133,10 @@ pub unsafe extern "C" fn wave_speed(
 /// `instance` is NULL or from `create`, `batch` NULL or a batch made for its model and this call.
 unsafe fn run(instance: *const c_void, batch: *const lahar_stress_batch, call: Call) -> i32 {
     code(guard(|| {
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         let instance = unsafe { instance.cast::<Instance>().as_ref() };
         let instance = instance.ok_or("the instance is NULL")?;
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         let mut points = unsafe { Points::of(instance.adapted, batch, call) }?;
         let _environment = Environment::current();
         match (call, instance.adapted.library.routine) {
@@ -152,7 +152,7 @@ fn code(result: Option<()>) -> i32 {
     if result.is_some() { LAHAR_PLUGIN_OK } else { LAHAR_PLUGIN_ERROR }
 }
 
-/// The safe picture of a batch. What the call does not have is an empty slice.
+/// The safe view of a batch. What the call does not have is an empty slice.
 pub struct Points<'a> {
     pub n: usize,
     pub stride: usize,
@@ -180,7 +180,7 @@ impl<'a> Points<'a> {
         batch: *const lahar_stress_batch,
         call: Call,
     ) -> Result<Self, String> {
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         let b = unsafe { batch.as_ref() }.ok_or("the batch is NULL")?;
         if (b.struct_size as usize) < size_of::<lahar_stress_batch>() {
             return Err("the batch is shorter than that of the ABI".into());
@@ -261,7 +261,7 @@ unsafe fn slice_of<'a, T>(base: *const T, length: usize) -> Result<&'a [T], Stri
     match (length, base.is_null()) {
         (0, _) => Ok(&[]),
         (_, true) => Err("an array of the batch is NULL".into()),
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         _ => Ok(unsafe { slice::from_raw_parts(base, length) }),
     }
 }
@@ -270,7 +270,7 @@ unsafe fn slice_of<'a, T>(base: *const T, length: usize) -> Result<&'a [T], Stri
 ///
 /// As for [`slice_of`].
 unsafe fn array<'a>(base: *const f64, length: usize) -> Result<&'a [f64], String> {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { slice_of(base, length) }
 }
 
@@ -281,7 +281,7 @@ unsafe fn array_mut<'a>(base: *mut f64, length: usize) -> Result<&'a mut [f64], 
     match (length, base.is_null()) {
         (0, _) => Ok(&mut []),
         (_, true) => Err("an output of the batch is NULL".into()),
-        // SAFETY: told by the caller.
+        // SAFETY: guaranteed by the caller.
         _ => Ok(unsafe { slice::from_raw_parts_mut(base, length) }),
     }
 }
@@ -290,6 +290,6 @@ unsafe fn array_mut<'a>(base: *mut f64, length: usize) -> Result<&'a mut [f64], 
 ///
 /// As for [`array_mut`].
 unsafe fn optional<'a, T>(base: *mut T, length: usize) -> &'a mut [T] {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     if base.is_null() { &mut [] } else { unsafe { slice::from_raw_parts_mut(base, length) } }
 }

@@ -15,7 +15,7 @@ static HOST: AtomicPtr<lahar_host_api> = AtomicPtr::new(ptr::null_mut());
 ///
 /// `host` is NULL or points to a host table that stays valid for the life of the process.
 pub unsafe fn keep(host: *const lahar_host_api) {
-    // SAFETY: told by the caller; every table of the ABI begins with its size.
+    // SAFETY: guaranteed by the caller; every table of the ABI begins with its size.
     let size = unsafe { host.cast::<u32>().as_ref() }.copied().unwrap_or(0) as usize;
     if size >= size_of::<lahar_host_api>() {
         HOST.store(host.cast_mut(), Ordering::Release);
@@ -23,7 +23,7 @@ pub unsafe fn keep(host: *const lahar_host_api) {
 }
 
 fn table() -> Option<&'static lahar_host_api> {
-    // SAFETY: NULL, or a pointer that came through `keep`, whose caller vouches for its life.
+    // SAFETY: NULL, or a pointer that came through `keep`, whose caller guarantees that it lives as long.
     unsafe { HOST.load(Ordering::Acquire).as_ref() }
 }
 

@@ -1,6 +1,6 @@
 //! Makes plugins of lahar of shared libraries that export an Abaqus UMAT or VUMAT.
 //!
-//! The engine asks [`lahar_plugin_adapt_v1`], the only export, when a library has no entry of a plugin. What a UMAT cannot say of itself,
+//! The engine calls [`lahar_plugin_adapt_v1`], the only export, when a library has no entry of a plugin. What a UMAT does not contain,
 //! names, units, bounds, the number of state variables, stands in an optional file beside the library (`sidecar`). `describe` makes
 //! the tables of the ABI of both, `calls` has their functions, `umat` and `vumat` call the routine. README.md is the manual.
 
@@ -35,7 +35,7 @@ pub unsafe extern "C" fn lahar_plugin_adapt_v1(
     path: *const c_char,
 ) -> *const lahar_plugin_desc {
     std::panic::set_hook(Box::new(|_| ()));
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { adapt(host, path) }
 }
 
@@ -46,13 +46,13 @@ pub unsafe extern "C" fn lahar_plugin_adapt_v1(
 /// `host` is NULL or a host table that stays valid for the life of the process, `path` is NULL or a text that ends with a NUL; one call at a
 /// time. The initialisers of the library run.
 pub unsafe fn adapt(host: *const lahar_host_api, path: *const c_char) -> *const lahar_plugin_desc {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { host::keep(host) };
     let adapted = host::guard(|| {
         if path.is_null() {
             return Err("the path of the library is NULL".into());
         }
-        // SAFETY: not NULL, the rest is told by the caller.
+        // SAFETY: not NULL, the rest is guaranteed by the caller.
         let path = Path::new(OsStr::from_bytes(unsafe { CStr::from_ptr(path) }.to_bytes()));
         describe::adapt(path)
     });

@@ -29,10 +29,10 @@ struct FirstState {
 /// `data` points to a `FirstState` whose routine is an SDVINI. No destructor may stand in here: XIT of the utility routines jumps over this
 /// function.
 unsafe extern "C" fn call_sdvini(data: *mut c_void) {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     let a = unsafe { &mut *data.cast::<FirstState>() };
     let [nstatv, ncrds, noel, npt, layer, kspt] = &mut a.numbers;
-    // SAFETY: told by the caller; STATEV and COORDS are as long as the numbers say.
+    // SAFETY: guaranteed by the caller; STATEV and COORDS are as long as the numbers say.
     unsafe {
         let routine: Sdvini = std::mem::transmute(a.routine);
         routine(
@@ -81,7 +81,7 @@ pub fn init_state(instance: &Instance, p: &mut Points<'_>) -> Result<(), String>
         }
         if data.statev[n..].iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
             return Err(format!(
-                "SDVINI wrote behind STATEV({n}); tell with `states` in the sidecar how many there are"
+                "SDVINI wrote behind STATEV({n}); give their number as `states` in the sidecar"
             ));
         }
         for (value, place) in data.statev.iter().zip(states) {

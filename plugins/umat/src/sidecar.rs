@@ -1,4 +1,5 @@
-//! The sidecar file: what a UMAT does not say of itself. `libmodel.so` has `libmodel.json` beside it.
+//! The sidecar file: what the library of a UMAT does not contain. That of `libmodel.so` is
+//! `libmodel.json` in the same folder.
 
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use std::fmt;

@@ -102,7 +102,7 @@ thread_local! {
 /// `data` points to `Arguments` whose routine is a UMAT with the hidden length that they say. No destructor may stand in here: XIT of the
 /// utility routines jumps out of the routine over this function.
 unsafe extern "C" fn call(data: *mut c_void) {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     let a = unsafe { &mut *data.cast::<Arguments>() };
     let [sse, spd, scd] = &mut a.energies;
     let ddsdde = a.ddsdde[a.lane & (LANES - 1)].as_mut_ptr();
@@ -473,8 +473,8 @@ impl Arguments {
         let nstatv = instance.adapted.states.len();
         self.statev[nstatv..].fill(UNTOUCHED);
         format!(
-            "the UMAT wrote behind STATEV({nstatv}), the last of its state variables; tell with `states` in the sidecar {} how many it \
-             has",
+            "the UMAT wrote behind STATEV({nstatv}), the last of its state variables; give their number as `states` in the \
+             sidecar {}",
             instance.adapted.library.path().with_extension("json").display()
         )
     }

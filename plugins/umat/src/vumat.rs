@@ -86,7 +86,7 @@ thread_local! {
 /// `data` points to a `Block` whose routine is a VUMAT with the hidden length that it says. No destructor may stand in here: XPLB_EXIT of the
 /// utility routines jumps out of the routine over this function.
 unsafe extern "C" fn call(data: *mut c_void) {
-    // SAFETY: told by the caller.
+    // SAFETY: guaranteed by the caller.
     let b = unsafe { &mut *data.cast::<Block>() };
     let ([t0, t1], [u0, u1], [f0, f1]) = (&mut b.temp, &mut b.stretch, &mut b.defgrad);
     let ([v0, v1], [s0, s1], [q0, q1]) = (&mut b.field, &mut b.stress, &mut b.state);
@@ -399,7 +399,7 @@ impl Block {
         let values = self.state[1].len() - BEHIND;
         if self.state[1][values..].iter().any(|x| x.to_bits() != UNTOUCHED.to_bits()) {
             return Err(format!(
-                "the VUMAT wrote behind stateNew(nblock, {nstatev}); tell with `states` in the sidecar {} how many state variables it has",
+                "the VUMAT wrote behind stateNew(nblock, {nstatev}); give the number of state variables as `states` in the sidecar {}",
                 instance.adapted.library.path().with_extension("json").display()
             ));
         }
@@ -464,7 +464,7 @@ impl Block {
         }
     }
 
-    /// K + 4/3 G of the step just made, from how pressure and deviator follow their strains, where those are large enough to tell (as Abaqus
+    /// K + 4/3 G of the step just made, from how pressure and deviator follow their strains, where those are large enough (as Abaqus
     /// does); and whether stress and state are finite.
     fn modulus(&self, adapted: &Adapted, k: usize, m: usize) -> (f64, bool) {
         let ntens = adapted.ntens;

@@ -1,5 +1,5 @@
 //! What the adapter costs beside the UMAT itself.
-#![allow(clippy::print_stdout)] // it tells the figure
+#![allow(clippy::print_stdout)] // it prints the time
 
 mod support;
 

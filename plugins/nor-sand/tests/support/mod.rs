@@ -88,7 +88,8 @@ pub fn one_step(d: &mut Driver, strain: [f64; 6]) {
     d.commit();
 }
 
-/// One step of a triaxial test of point 0 with the model's tangent, which must succeed. Returns the strain.
+/// One step of a triaxial test of point 0 with the model's tangent, which must succeed. Returns
+/// the strain.
 pub fn confined_step(d: &mut Driver, axial: f64, confinement: f64) -> [f64; 6] {
     d.triaxial_step_by_tangent(0, axial, confinement).unwrap()
 }
