@@ -1,15 +1,19 @@
 //! Safe Rust for authors of constitutive models.
 //!
 //! A model is a type that implements [`Model`]: its constants describe it, `new` makes an instance from parameter
-//! values and `update` advances a [`Batch`] of points. [`ModelTable::of`] turns the type into the static table of the
-//! plugin ABI, a static [`Plugin`], which [`plugin!`] writes, lists the tables, and [`export_plugin!`], in a thin
-//! `cdylib` of its own, writes the one symbol that the engine looks for. A model needs no `unsafe`.
+//! values and `update` advances a [`Batch`] of points. [`ModelTable::of`] turns the type into the
+//! static table of the plugin ABI, a static [`Plugin`], which [`plugin!`] writes, lists the tables,
+//! and [`export_plugin!`], in a thin `cdylib` of its own, writes the one symbol that the engine looks
+//! for. A model needs no `unsafe`.
 //!
 //! Conventions of all arrays: SI or any other consistent units; tension positive; symmetric tensors are the tensor
 //! components xx, yy, zz, xy, yz, zx; general tensors are row-major; both are three-dimensional in plane strain too.
 //!
 //! A model whose formulas are those of one point is written as a [`PointLaw`]: [`Batch::for_each_point`] runs it over a
 //! batch with the widest vector instructions of the processor ([`simd`]).
+//!
+//! What models share stands in modules: [`elastic`], with [`elastic_model!`] for models of constant
+//! moduli, [`plastic`], [`radial`], [`isotropic`], [`gap`], [`tensor`], [`math`] and [`root`].
 //!
 //! A panic in a model does not leave the plugin: the function that was running returns `LAHAR_PLUGIN_ERROR` with the
 //! text of the panic. [`Driver`] runs a model through its table without an engine: element tests are written with
@@ -47,7 +51,8 @@ pub use table::{
 };
 pub use wall::{enter, log, should_stop};
 
-/// Writes the static `PLUGIN` with the listed models, and `plugin`, its entry for programs that link it statically.
+/// Writes the static `PLUGIN` with the listed models, and the function `plugin`, its entry for
+/// programs that link it statically.
 ///
 /// Version, author and licence are those of the package in which the macro stands.
 ///
