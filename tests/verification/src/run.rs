@@ -1,8 +1,10 @@
 //! Running cases.
 
+use lahar::error::{Error, Status};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 
 use crate::case::{Case, Run, Size};
 
@@ -15,7 +17,45 @@ pub struct Outcome {
     pub series: BTreeMap<String, Vec<[f64; 2]>>,
     /// Why the engine did not go on, if so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub failure: Option<String>,
+    pub failure: Option<Failure>,
+}
+
+/// The error that ended a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Name of its status, see [`status_name`].
+    pub status: String,
+    /// Time at the start of the step that failed [s]; none if it was not a step that failed.
+    pub time: Option<f64>,
+    /// Its text.
+    pub message: String,
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self { status: status_name(error.status), time: error.place.time, message: error.message }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.time {
+            Some(time) => write!(f, "ended with `{}` at {time:.4} s", self.status),
+            None => write!(f, "ended with `{}`", self.status),
+        }
+    }
+}
+
+/// Name of a status in the files of the cases: `material_failed` for `LAHAR_ERROR_MATERIAL_FAILED`.
+pub fn status_name(status: Status) -> String {
+    let mut name = String::new();
+    for letter in format!("{status:?}").chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
 }
 
 impl Outcome {
@@ -65,7 +105,7 @@ pub fn run_all<'a>(
             let prepared = case.prepare(run)?;
             let (mut outcome, failed) = match prepared() {
                 Ok(outcome) => (outcome, 0.0),
-                Err(e) => (Outcome { failure: Some(e.to_string()), ..Outcome::default() }, 1.0),
+                Err(e) => (Outcome { failure: Some(e.into()), ..Outcome::default() }, 1.0),
             };
             outcome.set("failed", failed);
             told(case, run);

@@ -30,8 +30,7 @@ fn reaches_its_gates(case: Case) -> Result<(), Failed> {
     }
     let wrong: Vec<String> =
         rows.iter().filter(|row| !row.passes()).map(|row| format!("{row:#?}")).collect();
-    let failures = done.iter().filter_map(|done| done.outcome.failure.as_deref());
-    let failures: Vec<&str> = failures.collect();
+    let failures: Vec<_> = done.iter().filter_map(|done| done.outcome.failure.as_ref()).collect();
     if wrong.is_empty() {
         return Ok(());
     }

@@ -1,5 +1,6 @@
 //! Bad files of cases are refused with the place of the error; gates and orders are what they say.
 
+use lahar::error::{Error, Status};
 use lahar_verification::case::{Case, Gate, load};
 use lahar_verification::judge::judge;
 use lahar_verification::run::Outcome;
@@ -77,7 +78,10 @@ fn an_order_is_the_slope_of_the_errors_and_a_failed_run_holds_nothing() {
     let rows = table(&outcomes).expect("a table");
     assert!(rows[0].holds && (rows[0].error.expect("an error") - 0.05).abs() < 1e-12);
     assert!(rows[1].holds && (rows[1].value.expect("an order") - 2.0).abs() < 1e-12);
-    outcomes[1] = Outcome { failure: Some("it broke".to_string()), ..Outcome::new() };
+    outcomes[1] = Outcome {
+        failure: Some(Error::new(Status::NonFinite, "it broke").into()),
+        ..Outcome::new()
+    };
     let rows = table(&outcomes).expect("a table");
     assert!(!rows[1].holds && rows[1].value.is_none());
     outcomes[1] = Outcome::new();

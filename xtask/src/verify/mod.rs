@@ -48,7 +48,8 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     }
     for done in &done {
         if let Some(failure) = &done.outcome.failure {
-            eprintln!("{}: {}: the engine ended: {failure}", done.case.case, done.run.name);
+            let (case, run, message) = (&done.case.case, &done.run.name, &failure.message);
+            eprintln!("{case}: {run}: ended with {}: {message}", failure.status);
         }
     }
     if !arguments.dry_run {

@@ -103,7 +103,7 @@ fn chapter(text: &mut String, part: &Part<'_>) {
     }
     for run in &part.kept.runs {
         if let Some(failure) = &run.outcome.failure {
-            let _ = writeln!(text, "\n*{}* ended: {failure}", run.name);
+            let _ = writeln!(text, "\n*{}* ended: {}", run.name, failure.message);
         }
     }
     case.remarks.iter().for_each(|remark| {
