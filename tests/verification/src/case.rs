@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::family::{self, Prepared};
+use crate::known::{Known, KnownOrder};
 
 /// A verification case, the content of one file.
 #[derive(Clone, Debug, Deserialize)]
@@ -78,10 +79,9 @@ pub struct Check {
     pub reference: Option<f64>,
     /// What is accepted.
     pub gate: Gate,
-    /// Whether the method is known not to reach the gate: then it must not.
-    #[serde(default)]
-    pub expected_failure: bool,
-    /// A word on it.
+    /// What the run is known to give if its method misses the gate: then it must give that.
+    pub known: Option<Known>,
+    /// A word on it; the reason of a known miss.
     #[serde(default)]
     pub note: String,
 }
@@ -117,10 +117,9 @@ pub struct Order {
     pub fit: Fit,
     /// What is accepted.
     pub gate: Gate,
-    /// Whether the method is known not to reach the gate: then it must not.
-    #[serde(default)]
-    pub expected_failure: bool,
-    /// A word on it.
+    /// What the runs are known to give if their method misses the gate: then they must give that.
+    pub known: Option<KnownOrder>,
+    /// A word on it; the reason of a known miss.
     #[serde(default)]
     pub note: String,
 }
@@ -254,17 +253,57 @@ impl Case {
             return Err(format!("run \"{name}\" is not checked by anything"));
         }
         for check in &self.checks {
-            let needs = matches!(check.gate, Gate::Relative(_) | Gate::Absolute(_));
-            if needs && check.reference.is_none() {
-                return Err(format!("the check of {} needs a `reference`", check.quantity));
-            }
+            check.check().map_err(|e| format!("run \"{}\", {}: {e}", check.run, check.quantity))?;
         }
         for order in &self.orders {
-            if order.runs.len() < 2 {
-                return Err(format!("order \"{}\" needs two runs or more", order.name));
-            }
+            order.check().map_err(|e| format!("order \"{}\": {e}", order.name))?;
             order.runs.iter().try_for_each(|name| self.cells_of(name).map(drop))?;
         }
+        Ok(())
+    }
+}
+
+impl Check {
+    fn check(&self) -> Result<(), String> {
+        let Some(accepted) = self.gate.accepted(self.reference) else {
+            return Err("its gate needs a `reference`".to_string());
+        };
+        if self.quantity == "failed" && self.gate.accepts(1.0, self.reference) {
+            return Err(
+                "its gate accepts any error; give a known miss with `ends_with`".to_string()
+            );
+        }
+        let Some(known) = &self.known else { return Ok(()) };
+        match known {
+            Known::Value(_) if self.quantity == "failed" => {
+                return Err("a band of `failed` accepts any error; give `ends_with`".to_string());
+            }
+            Known::Value(band) => band.check(Some(accepted))?,
+            Known::End(end) => end.check()?,
+        }
+        reason(&self.note)
+    }
+}
+
+impl Order {
+    fn check(&self) -> Result<(), String> {
+        if self.runs.len() < 2 {
+            return Err("it needs two runs or more".to_string());
+        }
+        let Some(accepted) = self.gate.accepted(None) else {
+            return Err("an order has no reference, and its gate needs one".to_string());
+        };
+        let Some(known) = &self.known else { return Ok(()) };
+        known.check(accepted)?;
+        reason(&self.note)
+    }
+}
+
+/// A known miss has its reason beside it.
+fn reason(note: &str) -> Result<(), String> {
+    if note.is_empty() {
+        Err("a known miss needs its reason, a `note`".to_string())
+    } else {
         Ok(())
     }
 }

@@ -4,8 +4,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::case::{Case, Fit, Gate, Order};
-use crate::run::{Done, Outcome};
+use crate::case::{Case, Check, Fit, Gate, Order};
+use crate::known::{Band, Known};
+use crate::run::{Done, Failure, Outcome};
 
 /// A line of the table; serialised, a line of `cargo xtask verify --json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,8 +25,13 @@ pub struct Row {
     pub gate: String,
     /// Whether the value is accepted.
     pub holds: bool,
-    /// Whether the method is known not to reach the gate.
-    pub expected_failure: bool,
+    /// What the run is known to give if its method misses the gate.
+    pub known: Option<String>,
+    /// What was seen beside the value: the error that ended the run, or the last error of an order
+    /// that is a known miss.
+    pub seen: Option<String>,
+    /// What follows from gate and known miss.
+    pub verdict: Verdict,
     /// A word on it.
     #[serde(skip)]
     pub note: String,
@@ -34,10 +40,52 @@ pub struct Row {
     pub is_order: bool,
 }
 
-impl Row {
-    /// Whether the check passes: a gate that must hold does, a gate that a method is known to miss is missed.
-    pub fn passes(&self) -> bool {
-        self.holds != self.expected_failure
+/// What follows for a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The gate holds.
+    Holds,
+    /// The gate is missed, and the value is what the run is known to give.
+    KnownMiss,
+    /// The run ended with the error that it is known to end with.
+    KnownEnd,
+    /// The gate is missed, which is not known.
+    Misses,
+    /// The gate is missed, but not as it is known: another value, none, or another error.
+    MissesOtherwise,
+    /// The gate holds though it is known to be missed.
+    HoldsThoughKnown,
+}
+
+impl Verdict {
+    /// Whether the check passes: a gate that must hold does, a known miss gives what it is known to give.
+    pub fn passes(self) -> bool {
+        matches!(self, Verdict::Holds | Verdict::KnownMiss | Verdict::KnownEnd)
+    }
+
+    /// From whether the gate holds and, of a known miss, what it is if all is as known and whether
+    /// it is so.
+    fn of(holds: bool, known: Option<(Verdict, bool)>) -> Self {
+        match (holds, known) {
+            (true, None) => Verdict::Holds,
+            (false, None) => Verdict::Misses,
+            (true, Some(_)) => Verdict::HoldsThoughKnown,
+            (false, Some((as_known, true))) => as_known,
+            (false, Some((_, false))) => Verdict::MissesOtherwise,
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Verdict::Holds => "holds",
+            Verdict::KnownMiss | Verdict::KnownEnd => "known miss",
+            Verdict::Misses => "misses",
+            Verdict::MissesOtherwise => "misses, but not as known",
+            Verdict::HoldsThoughKnown => "holds, though a known miss",
+        })
     }
 }
 
@@ -72,6 +120,18 @@ impl Gate {
         }
     }
 
+    /// The values that are accepted; none if a reference is missing.
+    pub fn accepted(self, reference: Option<f64>) -> Option<Band> {
+        let about = |r: f64, width: f64| Band(r - width, r + width);
+        match self {
+            Gate::Relative(bound) => reference.map(|r| about(r, bound * r.abs())),
+            Gate::Absolute(bound) => reference.map(|r| about(r, bound)),
+            Gate::AtMost(bound) => Some(Band(f64::NEG_INFINITY, bound)),
+            Gate::AtLeast(bound) => Some(Band(bound, f64::INFINITY)),
+            Gate::Between(low, high) => Some(Band(low, high)),
+        }
+    }
+
     fn error(self, value: f64, reference: Option<f64>) -> Option<f64> {
         match self {
             Gate::Relative(_) => reference.map(|r| value / r - 1.0),
@@ -86,20 +146,9 @@ impl Gate {
 pub fn judge(case: &Case, outcomes: &BTreeMap<String, &Outcome>) -> Result<Vec<Row>, String> {
     let mut rows = Vec::new();
     for check in &case.checks {
-        let Some(outcome) = outcomes.get(&check.run) else { continue };
-        let value = value_of(case, &check.run, outcome, &check.quantity)?;
-        rows.push(Row {
-            case: case.case.clone(),
-            quantity: format!("{}: {}", check.run, check.quantity),
-            value,
-            reference: check.reference,
-            error: value.and_then(|value| check.gate.error(value, check.reference)),
-            gate: check.gate.to_string(),
-            holds: value.is_some_and(|value| check.gate.accepts(value, check.reference)),
-            expected_failure: check.expected_failure,
-            note: check.note.clone(),
-            is_order: false,
-        });
+        if let Some(outcome) = outcomes.get(&check.run) {
+            rows.push(check_row(case, check, outcome)?);
+        }
     }
     for order in &case.orders {
         if order.runs.iter().all(|run| outcomes.contains_key(run)) {
@@ -109,20 +158,52 @@ pub fn judge(case: &Case, outcomes: &BTreeMap<String, &Outcome>) -> Result<Vec<R
     Ok(rows)
 }
 
+fn check_row(case: &Case, check: &Check, outcome: &Outcome) -> Result<Row, String> {
+    let value = value_of(case, &check.run, outcome, &check.quantity)?;
+    let holds = value.is_some_and(|value| check.gate.accepts(value, check.reference));
+    let known = check.known.as_ref().map(|known| match known {
+        Known::Value(band) => (Verdict::KnownMiss, band.contains(value)),
+        Known::End(end) => (Verdict::KnownEnd, end.is(outcome.failure.as_ref())),
+    });
+    Ok(Row {
+        case: case.case.clone(),
+        quantity: format!("{}: {}", check.run, check.quantity),
+        value,
+        reference: check.reference,
+        error: value.and_then(|value| check.gate.error(value, check.reference)),
+        gate: check.gate.to_string(),
+        holds,
+        known: check.known.as_ref().map(Known::to_string),
+        seen: outcome.failure.as_ref().map(Failure::to_string),
+        verdict: Verdict::of(holds, known),
+        note: check.note.clone(),
+        is_order: false,
+    })
+}
+
 fn order_row(
     case: &Case,
     order: &Order,
     outcomes: &BTreeMap<String, &Outcome>,
 ) -> Result<Row, String> {
     let mut points = Vec::new();
+    let mut last_error = None;
     for run in &order.runs {
-        if let Some(error) = value_of(case, run, outcomes[run], &order.quantity)? {
-            points.push([-case.cells_of(run)?.ln(), error.abs().ln()]);
+        last_error = value_of(case, run, outcomes[run], &order.quantity)?.map(f64::abs);
+        if let Some(error) = last_error {
+            points.push([-case.cells_of(run)?.ln(), error.ln()]);
         }
     }
     let whole = points.len() == order.runs.len();
     let from = if order.fit == Fit::LastPair { points.len().saturating_sub(2) } else { 0 };
     let value = whole.then(|| slope(&points[from..])).filter(|value| value.is_finite());
+    let holds = value.is_some_and(|value| order.gate.accepts(value, None));
+    let known = order.known.map(|known| {
+        let as_known = known.order.contains(value) && known.last_error.contains(last_error);
+        (Verdict::KnownMiss, as_known)
+    });
+    let failure = order.runs.iter().find_map(|run| outcomes[run].failure.as_ref());
+    let error_seen = last_error.filter(|_| order.known.is_some());
     Ok(Row {
         case: case.case.clone(),
         quantity: order.name.clone(),
@@ -130,8 +211,12 @@ fn order_row(
         reference: None,
         error: None,
         gate: order.gate.to_string(),
-        holds: value.is_some_and(|value| order.gate.accepts(value, None)),
-        expected_failure: order.expected_failure,
+        holds,
+        known: order.known.map(|known| known.to_string()),
+        seen: failure
+            .map(Failure::to_string)
+            .or_else(|| error_seen.map(|error| format!("last error {error:.3e}"))),
+        verdict: Verdict::of(holds, known),
         note: order.note.clone(),
         is_order: true,
     })

@@ -4,6 +4,7 @@
 //! run does is the driver of its family, a function from the set-up to named quantities and curves ([`family`]).
 //!
 //! * [`case`] reads the files, [`run`] runs them side by side, [`judge`] compares with references and gates.
+//! * [`known`] says what is known of a run whose method misses its gate.
 //! * [`family`] holds the drivers, [`world`] and [`statics`] what they share.
 //!
 //! `cargo xtask verify` writes the report; the test `cases` runs each case in its small sizes.
@@ -13,6 +14,7 @@ pub mod family;
 pub mod homogeneous;
 pub mod jet;
 pub mod judge;
+pub mod known;
 pub mod motion;
 pub mod run;
 pub mod statics;

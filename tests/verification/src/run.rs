@@ -64,6 +64,13 @@ impl Outcome {
         Self::default()
     }
 
+    /// Of a run that the engine ended: `failed` is 1, the other quantities are missing.
+    pub fn ended(error: Error) -> Self {
+        let mut outcome = Self { failure: Some(error.into()), ..Self::default() };
+        outcome.set("failed", 1.0);
+        outcome
+    }
+
     /// Notes a quantity.
     pub fn set(&mut self, name: &str, value: f64) {
         self.quantities.insert(name.to_string(), Some(value).filter(|value| value.is_finite()));
@@ -103,11 +110,10 @@ pub fn run_all<'a>(
         .with_max_len(1)
         .map(|(case, run)| {
             let prepared = case.prepare(run)?;
-            let (mut outcome, failed) = match prepared() {
-                Ok(outcome) => (outcome, 0.0),
-                Err(e) => (Outcome { failure: Some(e.into()), ..Outcome::default() }, 1.0),
-            };
-            outcome.set("failed", failed);
+            let outcome = prepared().map_or_else(Outcome::ended, |mut outcome| {
+                outcome.set("failed", 0.0);
+                outcome
+            });
             told(case, run);
             Ok(Done { case, run, outcome })
         })

@@ -29,7 +29,7 @@ fn reaches_its_gates(case: Case) -> Result<(), Failed> {
         return Err("no check of this case belongs to the test suite".into());
     }
     let wrong: Vec<String> =
-        rows.iter().filter(|row| !row.passes()).map(|row| format!("{row:#?}")).collect();
+        rows.iter().filter(|row| !row.verdict.passes()).map(|row| format!("{row:#?}")).collect();
     let failures: Vec<_> = done.iter().filter_map(|done| done.outcome.failure.as_ref()).collect();
     if wrong.is_empty() {
         return Ok(());

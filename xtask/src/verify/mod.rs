@@ -36,15 +36,12 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     let done = run::run_all(&cases, arguments.full, |case, run| {
         eprintln!("{}: {}", case.case, run.name);
     })?;
-    let mut wrong = Vec::new();
+    let mut rows = Vec::new();
     for case in &cases {
-        let rows = judge::judge(case, &judge::outcomes_of(case, &done))?;
-        for row in rows {
-            println!("{}", if arguments.json { line(&row)? } else { report::plain(&row) });
-            if !row.passes() {
-                wrong.push(format!("{}: {}", row.case, row.quantity));
-            }
-        }
+        rows.extend(judge::judge(case, &judge::outcomes_of(case, &done))?);
+    }
+    for row in &rows {
+        println!("{}", if arguments.json { line(row)? } else { report::plain(row) });
     }
     for done in &done {
         if let Some(failure) = &done.outcome.failure {
@@ -56,6 +53,12 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         store::keep(&cases, &done, &Machine::read().class())?;
         write_report()?;
     }
+    let [all, hold, misses, errors, amiss] = report::counts(&rows);
+    eprintln!(
+        "{all} checks: {hold} hold, {misses} known misses, {errors} known errors, {amiss} amiss"
+    );
+    let wrong: Vec<String> =
+        rows.iter().filter(|row| !row.verdict.passes()).map(report::plain).collect();
     if wrong.is_empty() {
         return Ok(());
     }

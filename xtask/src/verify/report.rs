@@ -1,7 +1,7 @@
 //! The text of `docs/verification.md`.
 
 use lahar_verification::case::{Case, Fit, Size};
-use lahar_verification::judge::Row;
+use lahar_verification::judge::{Row, Verdict};
 use std::fmt::Write;
 
 use super::store::Kept;
@@ -24,8 +24,11 @@ Written by `cargo xtask verify --full`; the set-ups and references are the files
 small sizes, those that the test suite runs too, and `cargo xtask verify D2` one case; what was not run anew stays as it was.
 `--json` prints one object a line.
 
-A gate *relative x* asks for |value / reference − 1| ≤ x, *absolute x* for |value − reference| ≤ x. A check that *fails as known* is one
-that the method is known to miss, or has to miss as a negative control: it is part of the table and would be an error if it held.
+A gate *relative x* asks for |value / reference − 1| ≤ x, *absolute x* for |value − reference| ≤ x. A *known miss* is a gate that the
+method is known not to reach, or must not reach as a negative control. What the run is known to give stands beside the gate: the band of
+the value; for an order of convergence, the bands of the order and of the error of its finest run; for a run that the engine ends, the
+error and the time. A check is amiss if its gate is missed without that being known, if a known miss gives anything else (another
+value, none, another error), and if it reaches the gate.
 ";
 
 /// The whole report.
@@ -35,32 +38,32 @@ pub fn document(parts: &[Part<'_>]) -> String {
         parts.iter().map(|part| part.kept.made.as_str()).filter(|made| !made.is_empty()).collect();
     let made: Vec<&str> = made.into_iter().collect();
     let _ = writeln!(text, "\nRun on: {}.\n", made.join("; "));
-    text += "| case | | checks | hold | fail as known | amiss |\n|---|---|---:|---:|---:|---:|\n";
-    let mut sums = [0; 4];
+    text += "| case | | checks | hold | known misses | known errors | amiss |\n\
+         |---|---|---:|---:|---:|---:|---:|\n";
+    let mut sums = [0; 5];
     for part in parts {
         let counts = counts(&part.rows);
-        let [all, hold, known, amiss] = counts;
         let (id, title) = (&part.case.case, &part.case.title);
         let link = anchor(&format!("{id}: {title}"));
-        let _ =
-            writeln!(text, "| [{id}](#{link}) | {title} | {all} | {hold} | {known} | {amiss} |");
-        (0..4).for_each(|k| sums[k] += counts[k]);
+        let _ = writeln!(text, "| [{id}](#{link}) | {title} | {} |", cells(&counts));
+        sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
-    let [all, hold, known, amiss] = sums;
-    let _ = writeln!(text, "| all | | {all} | {hold} | {known} | {amiss} |");
+    let _ = writeln!(text, "| all | | {} |", cells(&sums));
     parts.iter().for_each(|part| chapter(&mut text, part));
     text
 }
 
-/// All, those that hold as they should, those that fail as known, the others.
-fn counts(rows: &[Row]) -> [usize; 4] {
-    let count = |wanted: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| wanted(row)).count();
-    [
-        rows.len(),
-        count(&|row| row.holds && row.passes()),
-        count(&|row| !row.holds && row.passes()),
-        count(&|row| !row.passes()),
-    ]
+/// All; those that hold, known misses, runs that end with a known error, and the others.
+pub fn counts(rows: &[Row]) -> [usize; 5] {
+    let count = |wanted: Verdict| rows.iter().filter(|row| row.verdict == wanted).count();
+    let passing = [Verdict::Holds, Verdict::KnownMiss, Verdict::KnownEnd].map(count);
+    let amiss = rows.iter().filter(|row| !row.verdict.passes()).count();
+    [rows.len(), passing[0], passing[1], passing[2], amiss]
+}
+
+fn cells(counts: &[usize]) -> String {
+    let texts: Vec<String> = counts.iter().map(usize::to_string).collect();
+    texts.join(" | ")
 }
 
 fn chapter(text: &mut String, part: &Part<'_>) {
@@ -72,8 +75,7 @@ fn chapter(text: &mut String, part: &Part<'_>) {
     );
     let (orders, values): (Vec<&Row>, Vec<&Row>) = part.rows.iter().partition(|row| row.is_order);
     if !values.is_empty() {
-        *text += "| run: quantity | value | reference | error | gate | | |\n|---|---:|---:|---:|---|---|---|\n";
-        values.iter().for_each(|row| table_row(text, row));
+        table(text, "run: quantity", &values);
     }
     if !orders.is_empty() {
         let fits = case.orders.iter().any(|order| order.fit == Fit::LeastSquares);
@@ -86,9 +88,7 @@ fn chapter(text: &mut String, part: &Part<'_>) {
             text,
             "\nOrders of convergence, the slope of log error over log h, from {how}:\n"
         );
-        *text +=
-            "| order | value | reference | error | gate | | |\n|---|---:|---:|---:|---|---|---|\n";
-        orders.iter().for_each(|row| table_row(text, row));
+        table(text, "order", &orders);
     }
     let missing: Vec<&str> = case
         .runs
@@ -114,29 +114,39 @@ fn chapter(text: &mut String, part: &Part<'_>) {
     }
 }
 
-fn table_row(text: &mut String, row: &Row) {
+/// A table; what is known of misses has a column where there are any.
+fn table(text: &mut String, what: &str, rows: &[&Row]) {
+    let with_known = rows.iter().any(|row| row.known.is_some());
+    let (title, line) = if with_known { (" known to give |", "---|") } else { ("", "") };
+    let _ = writeln!(text, "| {what} | value | reference | error | gate |{title} | |");
+    let _ = writeln!(text, "|---|---:|---:|---:|---|{line}---|---|");
+    rows.iter().for_each(|row| table_row(text, row, with_known));
+}
+
+fn table_row(text: &mut String, row: &Row, with_known: bool) {
     let shown = |value: Option<f64>| value.map_or_else(String::new, digits);
     let value = row.value.map_or_else(|| "none".to_string(), digits);
     let error = match row.error {
         Some(error) if row.gate.starts_with("relative") => format!("{} %", digits(100.0 * error)),
         other => shown(other),
     };
-    let (quantity, reference) = (&row.quantity, shown(row.reference));
+    let (quantity, reference, gate) = (&row.quantity, shown(row.reference), &row.gate);
+    let known = row.known.as_deref().unwrap_or_default();
+    let known = if with_known { format!(" {known} |") } else { String::new() };
+    let verdict = verdict(row);
+    let verdict = if row.verdict.passes() { verdict } else { format!("**{verdict}**") };
     let _ = writeln!(
         text,
-        "| {quantity} | {value} | {reference} | {error} | {} | {} | {} |",
-        row.gate,
-        verdict(row),
+        "| {quantity} | {value} | {reference} | {error} | {gate} |{known} {verdict} | {} |",
         row.note
     );
 }
 
-fn verdict(row: &Row) -> &'static str {
-    match (row.holds, row.expected_failure) {
-        (true, false) => "holds",
-        (false, true) => "fails as known",
-        (false, false) => "**fails**",
-        (true, true) => "**holds, though known to fail**",
+/// The verdict, and what was seen beside the value where it is no plain one.
+fn verdict(row: &Row) -> String {
+    match &row.seen {
+        Some(seen) if row.verdict != Verdict::Holds => format!("{}: {seen}", row.verdict),
+        _ => row.verdict.to_string(),
     }
 }
 
@@ -145,8 +155,10 @@ pub fn plain(row: &Row) -> String {
     let value = row.value.map_or_else(|| "none".to_string(), digits);
     let reference =
         row.reference.map_or_else(String::new, |r| format!(" (reference {})", digits(r)));
-    let verdict = verdict(row).replace("**", "");
-    format!("{}  {} = {value}{reference}, {}: {verdict}", row.case, row.quantity, row.gate)
+    let known =
+        row.known.as_ref().map_or_else(String::new, |known| format!(" (known to give {known})"));
+    let (case, quantity, gate) = (&row.case, &row.quantity, &row.gate);
+    format!("{case}  {quantity} = {value}{reference}, {gate}{known}: {}", verdict(row))
 }
 
 /// Four digits and more where they are few.
