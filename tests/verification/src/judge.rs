@@ -81,7 +81,8 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Verdict::Holds => "holds",
-            Verdict::KnownMiss | Verdict::KnownEnd => "known miss",
+            Verdict::KnownMiss => "known miss",
+            Verdict::KnownEnd => "known error",
             Verdict::Misses => "misses",
             Verdict::MissesOtherwise => "misses, but not as known",
             Verdict::HoldsThoughKnown => "holds, though a known miss",

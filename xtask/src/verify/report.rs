@@ -25,10 +25,10 @@ small sizes, those that the test suite runs too, and `cargo xtask verify D2` one
 `--json` prints one object a line.
 
 A gate *relative x* asks for |value / reference − 1| ≤ x, *absolute x* for |value − reference| ≤ x. A *known miss* is a gate that the
-method is known not to reach, or must not reach as a negative control. What the run is known to give stands beside the gate: the band of
-the value; for an order of convergence, the bands of the order and of the error of its finest run; for a run that the engine ends, the
-error and the time. A check is amiss if its gate is missed without that being known, if a known miss gives anything else (another
-value, none, another error), and if it reaches the gate.
+method is known not to reach, or must not reach as a negative control. What its run is known to give stands beside the gate: a band of
+the value; for an order of convergence, a band of the order and one of the error of the last run; for a run that the engine ends, which
+is a *known error*, the status and a band of the time. A check is *amiss* if its gate is missed without that being known, or if a known
+miss gives anything else: another value, none, another error, or a value that the gate accepts.
 ";
 
 /// The whole report.
