@@ -49,7 +49,7 @@ pub enum Verdict {
     /// The gate is missed, and the value is what the run is known to give.
     KnownMiss,
     /// The run ended with the error that it is known to end with.
-    KnownEnd,
+    KnownError,
     /// The gate is missed, which is not known.
     Misses,
     /// The gate is missed, but not as it is known: another value, none, or another error.
@@ -59,9 +59,10 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Whether the check passes: a gate that must hold does, a known miss gives what it is known to give.
+    /// Whether the check passes: a gate that must hold does, a known miss gives what it is known to
+    /// give.
     pub fn passes(self) -> bool {
-        matches!(self, Verdict::Holds | Verdict::KnownMiss | Verdict::KnownEnd)
+        matches!(self, Verdict::Holds | Verdict::KnownMiss | Verdict::KnownError)
     }
 
     /// From whether the gate holds and, of a known miss, what it is if all is as known and whether
@@ -82,7 +83,7 @@ impl fmt::Display for Verdict {
         f.write_str(match self {
             Verdict::Holds => "holds",
             Verdict::KnownMiss => "known miss",
-            Verdict::KnownEnd => "known error",
+            Verdict::KnownError => "known error",
             Verdict::Misses => "misses",
             Verdict::MissesOtherwise => "misses, but not as known",
             Verdict::HoldsThoughKnown => "holds, though a known miss",
@@ -164,7 +165,7 @@ fn check_row(case: &Case, check: &Check, outcome: &Outcome) -> Result<Row, Strin
     let holds = value.is_some_and(|value| check.gate.accepts(value, check.reference));
     let known = check.known.as_ref().map(|known| match known {
         Known::Value(band) => (Verdict::KnownMiss, band.contains(value)),
-        Known::End(end) => (Verdict::KnownEnd, end.is(outcome.failure.as_ref())),
+        Known::End(end) => (Verdict::KnownError, end.is(outcome.failure.as_ref())),
     });
     Ok(Row {
         case: case.case.clone(),

@@ -66,8 +66,8 @@ impl Band {
 
     /// Refuses a band that is none, or that says little.
     ///
-    /// It must lie beside what the gate accepts. Its width is at most two thirds of its larger end (a
-    /// factor of three) or, if that is more, a fifth of the distance to the gate.
+    /// It must lie beside what the gate accepts. Its width is at most two thirds of its larger end
+    /// (a factor of three) or, if that is more, a fifth of the distance to the gate.
     pub fn check(self, accepted: Option<Band>) -> Result<(), String> {
         let Band(low, high) = self;
         if !(low < high && low.is_finite() && high.is_finite()) {

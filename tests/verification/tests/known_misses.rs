@@ -1,4 +1,5 @@
-//! A known miss gives what it is known to give: another value, none, another error and a gate that is reached all fail.
+//! A known miss gives what it is known to give: another value, none, another error and a gate that
+//! is reached all fail.
 
 use lahar::error::{Error, Place, Status};
 use lahar_verification::case::{Case, load};
@@ -70,14 +71,14 @@ fn a_missing_value_passes_only_where_the_run_is_known_to_end() {
     let a = ended(Status::NonFinite, Some(2.5));
     let seen = verdicts(&a, &a);
     let missed = Verdict::MissesOtherwise;
-    assert_eq!(seen, [missed, Verdict::KnownEnd, Verdict::Misses, missed]);
+    assert_eq!(seen, [missed, Verdict::KnownError, Verdict::Misses, missed]);
 }
 
 #[test]
 fn a_run_that_is_known_to_end_fails_if_it_ends_otherwise() {
     let a = through(&[("period", 11.5), ("error", 0.03)]);
     let of = |status: Status, time: Option<f64>| verdicts(&a, &ended(status, time))[1];
-    assert_eq!(of(Status::NonFinite, Some(3.0)), Verdict::KnownEnd);
+    assert_eq!(of(Status::NonFinite, Some(3.0)), Verdict::KnownError);
     assert_eq!(of(Status::MaterialFailed, Some(2.5)), Verdict::MissesOtherwise, "another error");
     assert_eq!(of(Status::NonFinite, Some(0.0)), Verdict::MissesOtherwise, "too early");
     assert_eq!(of(Status::NonFinite, None), Verdict::MissesOtherwise, "not in a step");
