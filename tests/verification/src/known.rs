@@ -6,8 +6,8 @@
 //!
 //! * Where round-off stays round-off (no particle crosses cells, quasi-static runs, closed forms)
 //!   the band is about 1 % of the value to either side, less where the gate is near.
-//! * Where particles cross cells or bodies touch, round-off can grow; the band is 2 % to 10 % to
-//!   either side, several times what instruction sets differ.
+//! * Where particles cross cells or bodies touch, round-off can grow; the band is 2 % to 15 % to
+//!   either side, several times what instruction sets differ; more if that is some per cent already.
 //! * A quantity that is lost altogether, such as energy under PIC, has a band that is narrow
 //!   beside what it was at the start.
 //! * An order of convergence has about 0.1 to either side, less where the gate is near, and with
