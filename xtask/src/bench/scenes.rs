@@ -1,4 +1,4 @@
-//! The scenes. All go in the order of the stages that updates stresses last (USL).
+//! The scenes. All but the trough go in the order of the stages that updates stresses last (USL).
 //!
 //! * **Box**: closed, slip walls, full of one material that an eddy stirs. The eddy
 //!   v = A (sin πx/L cos πy/L, −cos πx/L sin πy/L) keeps the volume and does not cross the walls, shears everywhere, and
@@ -7,6 +7,10 @@
 //!   stresses of its weight and the velocities v = a (2xz/H, 2yz/H, −2z²/H), which keep the volume and vanish at the
 //!   floor, so that its front moves on through new blocks from the first step. Particles are shaken off their lattice,
 //!   otherwise whole layers would change cells in the same step.
+//! * **Trough**: what people run. The options are the defaults of the engine, so that the order is MUSL. The same sand, as
+//!   high, stands at the closed end of a trough with smooth sides and a floor with friction and runs along it, with the
+//!   velocities v = a (2xz/H, 0, −z²/H). The planes of its walls lie half a cell from nodes and one cell outside of the
+//!   sand, as in `examples-c/02_column_collapse.c`: the last nodes that a wall holds are those just outside of the sand.
 //! * **Flight**: a block that turns, deforms and flies in empty space; what the peers compute too.
 
 use lahar::boundary::{Wall, WallKind};
@@ -36,7 +40,7 @@ pub struct Scene {
     model: &'static str,
     parameters: &'static [(&'static str, f64)],
     density: f64, // [kg/m^3]
-    speed: f64,   // A, or a H at the top of the column [m/s]
+    speed: f64,   // A, or a H, with H the height of the sand [m/s]
     far: bool,    // one more particle, a thousand boxes away along every axis
     linked: bool, // the model is part of the program instead of a plugin
 }
@@ -45,7 +49,15 @@ pub struct Scene {
 enum Setting {
     Box,
     Column,
+    Trough,
     Flight,
+}
+
+impl Setting {
+    /// Whether it is a heap of sand under gravity.
+    fn is_sand(self) -> bool {
+        matches!(self, Self::Column | Self::Trough)
+    }
 }
 
 const ELASTIC: &[(&str, f64)] = &[("youngs_modulus", 1e7), ("poissons_ratio", 0.3)];
@@ -74,17 +86,20 @@ const ELASTIC_BOX: Scene = Scene {
     linked: false,
 };
 
+const SAND_COLUMN: Scene = Scene {
+    name: "3d-quadratic-apic-drucker-prager-flow",
+    setting: Setting::Column,
+    plugin: "lahar_drucker_prager",
+    model: "drucker_prager",
+    parameters: SAND,
+    ..ELASTIC_BOX
+};
+
 /// The scenes that each have a row of targets, in the order of the tables.
-pub static SCENES: [Scene; 6] = [
+pub static SCENES: [Scene; 7] = [
     ELASTIC_BOX,
-    Scene {
-        name: "3d-quadratic-apic-drucker-prager-flow",
-        setting: Setting::Column,
-        plugin: "lahar_drucker_prager",
-        model: "drucker_prager",
-        parameters: SAND,
-        ..ELASTIC_BOX
-    },
+    SAND_COLUMN,
+    Scene { name: "3d-defaults-drucker-prager-walls", setting: Setting::Trough, ..SAND_COLUMN },
     Scene {
         name: "3d-quadratic-apic-newtonian",
         plugin: "lahar_newtonian",
@@ -127,11 +142,14 @@ pub fn find(name: &str) -> std::result::Result<&'static Scene, String> {
     })
 }
 
-const EDGE: f64 = 1.0; // of the box, the column and the flying block [m]
+const EDGE: f64 = 1.0; // of the box and the flying block, and of the sand in plan [m]
 const PER_CELL: i32 = 2; // particles per cell and axis
-const GRAVITY: f64 = 9.81; // on the column [m/s^2]
-const SIDE_PRESSURE: f64 = 0.5; // horizontal over vertical stress in the column
-const SHAKE: f64 = 0.2; // of the lattice pitch of the column's particles
+const GRAVITY: f64 = 9.81; // on sand [m/s^2]
+const HEIGHT: f64 = 2.0 * EDGE; // of the sand
+const SIDE_PRESSURE: f64 = 0.5; // horizontal over vertical stress in the sand
+const SHAKE: f64 = 0.2; // of the lattice pitch of the sand's particles
+const LENGTH: f64 = 3.0 * EDGE; // of the trough
+const FRICTION: f64 = 0.5; // coefficient of its floor
 const FAR_AWAY: f64 = 1000.0 * EDGE;
 
 impl Scene {
@@ -143,7 +161,7 @@ impl Scene {
         let mut world = World::new(context, &self.options(spacing))?;
         self.add_walls(&mut world)?;
         match self.setting {
-            Setting::Column => self.add_column(&mut world, &material)?,
+            Setting::Column | Setting::Trough => self.add_sand(&mut world, &material)?,
             Setting::Box | Setting::Flight => {
                 let body = world.add_shape(&material, &self.region(), &self.fill())?;
                 let position = read_points(&world, body, "position", self.dimension)?;
@@ -169,12 +187,12 @@ impl Scene {
 
     /// Distance of the grid's nodes for about so many particles [m].
     pub fn spacing(&self, particles: usize) -> f64 {
-        let volume = if self.setting == Setting::Column { 2.0 } else { 1.0 }; // in EDGE^D
+        let volume = if self.setting.is_sand() { HEIGHT / EDGE } else { 1.0 }; // in EDGE^D
         let per_axis = (particles as f64 / volume).powf(1.0 / self.dimension as f64);
         EDGE / (per_axis / f64::from(PER_CELL)).round().max(4.0)
     }
 
-    /// Edge of the cube that holds the body at first [m].
+    /// Edge of the cube that holds the flying block at first [m].
     pub fn edge(&self) -> f64 {
         EDGE
     }
@@ -190,26 +208,41 @@ impl Scene {
             ShapeKind::QuadraticBspline => 0.5 * spacing,
             _ => 0.0,
         };
-        let fall = if self.setting == Setting::Column { -GRAVITY } else { 0.0 };
-        Options {
-            dimension: self.dimension,
+        let fall = if self.setting.is_sand() { -GRAVITY } else { 0.0 };
+        let defaults = Options {
             spacing,
             origin: [shift; 3],
+            gravity: [0.0, 0.0, fall],
+            ..Options::default()
+        };
+        if self.setting == Setting::Trough {
+            return defaults;
+        }
+        Options {
+            dimension: self.dimension,
             shape: self.shape,
             transfer: self.transfer,
             order: StepOrder::Usl,
-            gravity: [0.0, 0.0, fall],
-            ..Options::default()
+            ..defaults
         }
     }
 
     fn add_walls(&self, world: &mut World) -> Result<()> {
+        let h = world.options().spacing;
         let mut wall = |axis, side, position, kind| {
-            world.add_wall(&Wall { axis, side, position, kind, friction: 0.0 }).map(drop)
+            let friction = if kind == WallKind::Friction { FRICTION } else { 0.0 };
+            world.add_wall(&Wall { axis, side, position, kind, friction }).map(drop)
         };
         match self.setting {
             Setting::Flight => Ok(()),
             Setting::Column => wall(2, 1, 0.0, WallKind::Sticky),
+            Setting::Trough => {
+                wall(0, 1, -h, WallKind::Slip)?;
+                wall(0, -1, LENGTH, WallKind::Slip)?;
+                wall(1, 1, -h, WallKind::Slip)?;
+                wall(1, -1, EDGE + h, WallKind::Slip)?;
+                wall(2, 1, -h, WallKind::Friction)
+            }
             Setting::Box => (0..self.dimension).try_for_each(|axis| {
                 wall(axis, 1, 0.0, WallKind::Slip)?;
                 wall(axis, -1, EDGE, WallKind::Slip)
@@ -219,8 +252,8 @@ impl Scene {
 
     fn region(&self) -> Region {
         let mut max = [EDGE; 3];
-        if self.setting == Setting::Column {
-            max[2] = 2.0 * EDGE;
+        if self.setting.is_sand() {
+            max[2] = HEIGHT;
         }
         max[self.dimension..].fill(0.0);
         Region::Box { min: [0.0; 3], max }
@@ -230,7 +263,7 @@ impl Scene {
         Fill { particles_per_cell: PER_CELL, density: self.density, ..Fill::default() }
     }
 
-    fn add_column(&self, world: &mut World, material: &Arc<Material>) -> Result<()> {
+    fn add_sand(&self, world: &mut World, material: &Arc<Material>) -> Result<()> {
         let body = world.add_shape(material, &self.region(), &self.fill())?;
         let mut position = read_points(world, body, "position", 3)?;
         let shake = SHAKE * world.options().spacing / f64::from(PER_CELL);
@@ -238,7 +271,7 @@ impl Scene {
         position.iter_mut().for_each(|x| *x += shake * random(&mut seed));
         let mut stress = Vec::with_capacity(2 * position.len());
         for x in position.chunks(3) {
-            let down = -self.density * GRAVITY * (2.0 * EDGE - x[2]);
+            let down = -self.density * GRAVITY * (HEIGHT - x[2]);
             stress.extend([SIDE_PRESSURE * down, SIDE_PRESSURE * down, down, 0.0, 0.0, 0.0]);
         }
         write_points(world, body, "position", &position)?;
@@ -263,9 +296,13 @@ impl Scene {
         match self.setting {
             Setting::Box => [a * sin_x * cos_y, -a * cos_x * sin_y, 0.0],
             Setting::Column => {
-                let a = a / (2.0 * EDGE); // velocity over height
+                let a = a / HEIGHT;
                 let (x, y, z) = (x - 0.5 * EDGE, y - 0.5 * EDGE, z / EDGE);
                 [a * x * z, a * y * z, -a * z * z * EDGE]
+            }
+            Setting::Trough => {
+                let a = a / HEIGHT;
+                [2.0 * a * x * z / HEIGHT, 0.0, -a * z * z / HEIGHT]
             }
             Setting::Flight => {
                 let (turn, x, y) = (0.2 * a, x / EDGE - 0.5, y / EDGE - 0.5);
@@ -303,17 +340,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_column_keeps_its_volume_and_stands_still_at_the_floor() {
-        let (scene, e) = (&SCENES[1], 1e-6);
-        let at = |x: [f64; 3]| scene.velocity(x);
-        let x = [0.3, 0.8, 1.1];
-        let slope = |d: usize| {
-            let (mut low, mut high) = (x, x);
-            low[d] -= e;
-            high[d] += e;
-            (at(high)[d] - at(low)[d]) / (2.0 * e)
-        };
-        assert!((slope(0) + slope(1) + slope(2)).abs() < 1e-7);
-        assert_eq!(at([0.2, 0.9, 0.0]), [0.0; 3]);
+    fn sand_keeps_its_volume_and_stands_still_at_the_floor() {
+        let e = 1e-6;
+        for scene in SCENES.iter().filter(|scene| scene.setting.is_sand()) {
+            let x = [0.3, 0.8, 1.1];
+            let slope = |d: usize| {
+                let (mut low, mut high) = (x, x);
+                low[d] -= e;
+                high[d] += e;
+                (scene.velocity(high)[d] - scene.velocity(low)[d]) / (2.0 * e)
+            };
+            assert!((slope(0) + slope(1) + slope(2)).abs() < 1e-7, "{}", scene.name);
+            assert_eq!(scene.velocity([0.2, 0.9, 0.0]), [0.0; 3], "{}", scene.name);
+        }
+    }
+
+    #[test]
+    fn the_planes_of_the_trough_lie_half_a_cell_from_nodes() {
+        let scene = &SCENES[2];
+        let h = scene.spacing(4000);
+        let options = scene.options(h);
+        assert_eq!((options.order, options.shape), (StepOrder::Musl, ShapeKind::QuadraticBspline));
+        for plane in [-h, LENGTH, EDGE + h] {
+            let nodes = (plane - options.origin[0]) / h;
+            assert!((nodes - nodes.floor() - 0.5).abs() < 1e-9, "{plane}");
+        }
     }
 }

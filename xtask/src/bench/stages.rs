@@ -1,7 +1,8 @@
 //! The share of each stage in a step, from hooks that read the clock.
 //!
 //! The engine may not look at the clock, its hooks may. The last three stages run chunk by chunk between two hooks, on any
-//! thread; their part is divided as the threads together divide theirs between the three.
+//! thread; their part is divided as the threads together divide theirs between the three. The second scatter of MUSL has
+//! no hook: its time is in that part.
 
 use lahar::error::Result;
 use lahar::step::pass::ChunkStage;
