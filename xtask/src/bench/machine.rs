@@ -1,4 +1,4 @@
-//! What was measured on: date, commit and processor, for the heading of a table.
+//! What was measured on: date, commit, processor and how busy it was, for the heading of a table.
 
 use crate::process;
 use std::fmt;
@@ -10,24 +10,29 @@ pub struct Machine {
     commit: String,
     processor: String,
     cores: usize,
+    load: String,
 }
 
 impl Machine {
-    /// Reads what the system tells; what it does not tell is "unknown".
+    /// Reads what the system says now; what it does not say is "unknown". The load is that of others if this is read before
+    /// anything is built or timed.
     pub fn read() -> Self {
         let processor = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
             let line = text.lines().find(|line| line.starts_with("model name"))?;
             Some(line.split_once(':')?.1.trim().to_string())
         });
+        let load = std::fs::read_to_string("/proc/loadavg").ok();
+        let load = load.and_then(|text| Some(text.split_whitespace().next()?.to_string()));
         Self {
             date: first_line("date", &["-u", "+%F"]),
             commit: first_line("git", &["describe", "--always", "--dirty"]),
             processor: processor.unwrap_or_else(|| "unknown processor".to_string()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
+            load: load.unwrap_or_else(|| "unknown".to_string()),
         }
     }
 
-    /// Date, processor and cores, without the commit.
+    /// Date, processor and cores, without commit and load.
     pub fn class(&self) -> String {
         format!("{}, {}, {} cores", self.date, self.processor, self.cores)
     }
@@ -35,7 +40,8 @@ impl Machine {
 
 impl fmt::Display for Machine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, {}, {}, {} cores", self.date, self.commit, self.processor, self.cores)
+        let Self { date, commit, processor, cores, load } = self;
+        write!(f, "{date}, {commit}, {processor}, {cores} cores, load {load} before the run")
     }
 }
 

@@ -71,9 +71,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return measure::serve(scene, arguments.particles, threads, arguments.dt);
     }
     let scene = arguments.scene.as_deref().map(scenes::find).transpose()?;
+    let machine = Machine::read();
     process::cargo(&["build", "--release", "--workspace"])?;
     if let Some(peer) = arguments.peer {
-        return peers::run(peer, arguments);
+        return peers::run(peer, &machine, arguments);
     }
     let mut stick = arguments.stick.as_deref().map(Stick::build).transpose()?;
     let mut rows = Vec::new();
@@ -85,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         let how = (arguments.seconds, arguments.simd.as_deref());
         rows.extend(rounds::measure(&group, how, &mut bandwidth, with_stick)?);
     }
-    show(arguments, &rows, stick.as_ref())
+    show(arguments, &machine, &rows, stick.as_ref())
 }
 
 /// The groups of worlds that are timed in turns, for a run that shows everything.
@@ -125,7 +126,12 @@ fn is_first(group: &[Case]) -> bool {
     group[0].scene.name == APIC_ELASTIC.name && group[0].particles != targets::SMALL
 }
 
-fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<(), String> {
+fn show(
+    arguments: &Arguments,
+    machine: &Machine,
+    rows: &[Row],
+    stick: Option<&Stick>,
+) -> Result<(), String> {
     let whole = arguments.scene.is_none();
     let mut checks = targets::judge(rows, arguments.particles, stick);
     let mut tables = report::rows(rows);
@@ -140,5 +146,5 @@ fn show(arguments: &Arguments, rows: &[Row], stick: Option<&Stick>) -> Result<()
     } else {
         print!("{tables}");
     }
-    if arguments.dry_run { Ok(()) } else { report::append("bench.md", &tables) }
+    if arguments.dry_run { Ok(()) } else { report::append("bench.md", machine, &tables) }
 }

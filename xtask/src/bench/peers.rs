@@ -6,9 +6,9 @@
 
 use super::rounds::{ROUNDS, median, number, paired};
 use super::scenes::{FLIGHT, read_points};
-use super::targets::{Check, at_least, at_most};
+use super::targets::{Check, Verdict, at_least, at_most};
 use super::worker::Worker;
-use super::{Arguments, report};
+use super::{Arguments, Machine, report};
 use crate::process;
 use lahar::context::Context;
 use serde_json::{Value, json};
@@ -75,7 +75,7 @@ struct Outcome {
 }
 
 /// Times the engine and the peer in turns and compares where they end.
-pub fn run(peer: Peer, arguments: &Arguments) -> Result<(), String> {
+pub fn run(peer: Peer, machine: &Machine, arguments: &Arguments) -> Result<(), String> {
     let (packages, entries): (&[&str], &[Entry]) = match peer {
         Peer::Taichi => (&["taichi==1.7.4", "numpy==2.4.6"], &TAICHI),
         Peer::Warp => (&["warp-lang==1.19.0", "numpy==2.4.6"], &WARP),
@@ -97,7 +97,7 @@ pub fn run(peer: Peer, arguments: &Arguments) -> Result<(), String> {
     if !same {
         return Err(format!("the programs did not compute the same physics:\n{tables}"));
     }
-    if arguments.dry_run { Ok(()) } else { report::append("peers.md", &tables) }
+    if arguments.dry_run { Ok(()) } else { report::append("peers.md", machine, &tables) }
 }
 
 /// A virtual environment with the packages; gives its interpreter.
@@ -216,7 +216,7 @@ fn judge(entries: &[&Entry], outcomes: &[Outcome], start: &Value) -> (Vec<Check>
         for (what, figure) in [("centre of mass", center), ("kinetic energy", energy)] {
             let what = format!("{}, threads: {threads}, difference of {what}", entry.name);
             let check = at_most(what, figure, SAME);
-            same &= check.holds;
+            same &= check.verdict == Verdict::Holds;
             checks.push(check);
         }
     }

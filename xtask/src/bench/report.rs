@@ -3,7 +3,7 @@
 use super::machine::Machine;
 use super::rounds::Row;
 use super::stages::STAGES;
-use super::targets::Check;
+use super::targets::{Check, Verdict};
 use crate::process;
 use std::fmt::Write as _;
 
@@ -50,11 +50,15 @@ fn shares(rows: &[Row]) -> String {
     text
 }
 
-/// The targets with what holds.
+/// The targets with what holds, and the figures that inform.
 pub fn checks(checks: &[Check]) -> String {
     let mut text = String::from("| target | figure | bound | |\n|---|---:|---:|---|\n");
     for check in checks {
-        let verdict = if check.holds { "holds" } else { "missed" };
+        let verdict = match check.verdict {
+            Verdict::Holds => "holds",
+            Verdict::Missed => "missed",
+            Verdict::Informs => "for information",
+        };
         let figure = match check.figure {
             small if small < 0.001 => format!("{small:.1e}"),
             middle if middle < 10.0 => format!("{middle:.3}"),
@@ -71,10 +75,10 @@ pub fn json(rows: &[Row]) -> String {
 }
 
 /// Appends tables to a file of docs/perf, under a heading that says when and on what they were measured.
-pub fn append(file: &str, tables: &str) -> Result<(), String> {
+pub fn append(file: &str, machine: &Machine, tables: &str) -> Result<(), String> {
     let path = process::root().join("docs/perf").join(file);
     let before = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-    let text = format!("{}\n\n## {}\n\n{tables}", before.trim_end(), Machine::read());
+    let text = format!("{}\n\n## {machine}\n\n{tables}", before.trim_end());
     std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
     eprintln!("appended to docs/perf/{file}");
     Ok(())

@@ -42,7 +42,8 @@ pub struct Row {
 /// Rounds, and samples of each case.
 pub const ROUNDS: usize = 5;
 const WARM_UP: u64 = 10; // steps before the peak of memory is forgotten, and again after: buffers grow to their size
-const MOVED: f64 = 448.0; // bytes that an elastic step must move: 56 doubles
+/// What an elastic step must move: 56 doubles a particle [bytes].
+pub const MOVED: f64 = 448.0;
 
 impl Row {
     /// Median of the samples [ns per particle and step].
@@ -55,9 +56,14 @@ impl Row {
         median(&self.bandwidth)
     }
 
-    /// Time over that which memory alone would take: the median of the rounds.
+    /// Time over that which memory alone would take with as many threads: the median of the rounds.
     pub fn ratio(&self) -> f64 {
-        let ratios = self.samples.iter().zip(&self.bandwidth);
+        self.ratio_at(&self.bandwidth)
+    }
+
+    /// The same for the bandwidths of another row of these rounds [bytes/s].
+    pub fn ratio_at(&self, bandwidth: &[f64]) -> f64 {
+        let ratios = self.samples.iter().zip(bandwidth);
         median(&ratios.map(|(ns, speed)| ns * 1e-9 * speed / MOVED).collect::<Vec<_>>())
     }
 

@@ -1,8 +1,31 @@
 //! What the engine has to reach, and whether this run shows it.
+//!
+//! Ratios of figures of one run are judged, and bytes. Nanoseconds belong to a machine: they inform.
+//!
+//! The targets of the scenes were set in nanoseconds, on a machine on which a thread copies 40 GB/s: there 56 doubles take
+//! 11.2 ns. Over that, and rounded down, they are bounds in times the memory limit: 60 ns are 5.35. With 2 threads the limit is
+//! that of the copy on one thread too, since what two threads copy together varies by a factor of two from run to run.
+//!
+//! The trough is younger. Its nanoseconds are as far above what it took in one run with the first scene, 1.87 times as long, as
+//! those of the first scene are above what that took.
+//!
+//! Such a bound says little where memory is slow beside the cores: there the limit is so long that instructions hide in it. The
+//! ratios to the measuring stick and to a peer do not have that flaw.
 
-use super::rounds::{Row, paired};
+use super::rounds::{MOVED, Row, paired};
 use super::scenes::{APIC_ELASTIC, FAR, LINKED};
 use super::stick::Stick;
+
+/// Whether a figure keeps its bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It does.
+    Holds,
+    /// It does not.
+    Missed,
+    /// It is not judged.
+    Informs,
+}
 
 /// One target: what, the figure, the bound, whether it holds.
 pub struct Check {
@@ -10,33 +33,40 @@ pub struct Check {
     pub what: String,
     /// What was measured.
     pub figure: f64,
-    /// What was asked for, as text: "≤ 60".
+    /// What was asked for, as text: "≤ 5.35".
     pub bound: String,
     /// Whether the figure keeps the bound.
-    pub holds: bool,
+    pub verdict: Verdict,
 }
 
-/// Targets of a scene: ns per particle and step with 1 and with 2 threads, bytes per particle.
+/// Targets of a scene.
 struct Target {
     scene: &'static str,
-    nanoseconds: [f64; 2],
-    bytes: f64,
+    nanoseconds: [f64; 2], // a particle and step, with 1 and with 2 threads, where a thread copies `COPY`
+    bytes: f64,            // a particle
+    flows: bool,           // so that particles leave their blocks in every step
 }
 
-const TARGETS: [Target; 6] = [
-    Target { scene: "3d-quadratic-apic-elastic", nanoseconds: [60.0, 32.0], bytes: 400.0 },
-    Target {
-        scene: "3d-quadratic-apic-drucker-prager-flow",
-        nanoseconds: [95.0, 50.0],
-        bytes: 450.0,
-    },
-    Target { scene: "3d-quadratic-apic-newtonian", nanoseconds: [60.0, 32.0], bytes: 350.0 },
-    Target { scene: "3d-linear-flip-elastic", nanoseconds: [45.0, 24.0], bytes: 350.0 },
-    Target { scene: "3d-cubic-apic-elastic", nanoseconds: [110.0, 58.0], bytes: 400.0 },
-    Target { scene: "2d-quadratic-apic-elastic", nanoseconds: [35.0, 19.0], bytes: 350.0 },
+const COPY: f64 = 40e9; // of one thread of the machine for which nanoseconds were set [bytes/s]
+const TARGETS: [Target; 7] = [
+    target("3d-quadratic-apic-elastic", [60.0, 32.0], 400.0),
+    Target { flows: true, ..target("3d-quadratic-apic-drucker-prager-flow", [95.0, 50.0], 450.0) },
+    Target { flows: true, ..target("3d-defaults-drucker-prager-walls", [110.0, 58.0], 450.0) },
+    target("3d-quadratic-apic-newtonian", [60.0, 32.0], 350.0),
+    target("3d-linear-flip-elastic", [45.0, 24.0], 350.0),
+    target("3d-cubic-apic-elastic", [110.0, 58.0], 400.0),
+    target("2d-quadratic-apic-elastic", [35.0, 19.0], 350.0),
 ];
 
-const MEMORY_LIMIT: f64 = 6.0; // of the first scene with 1 thread
+const fn target(scene: &'static str, nanoseconds: [f64; 2], bytes: f64) -> Target {
+    Target { scene, nanoseconds, bytes, flows: false }
+}
+
+/// The bound in times the memory limit, in hundredths, that is no easier than so many nanoseconds at [`COPY`].
+fn times_limit(nanoseconds: f64) -> f64 {
+    (nanoseconds * 1e-9 * COPY / MOVED * 100.0).floor() / 100.0
+}
+
 const SPEED_UP: f64 = 1.85; // of 2 threads
 const GROWTH_UP: f64 = 1.06; // cost of a particle from N to 4 N
 const GROWTH_FROM_BELOW: f64 = 1.25; // from N / 10 to N: there the caches end
@@ -58,11 +88,6 @@ pub fn judge(rows: &[Row], particles: usize, stick: Option<&Stick>) -> Vec<Check
     let first = APIC_ELASTIC.name;
     let row = |scene: &str, asked: usize, threads: usize| find(rows, scene, asked, threads);
     let Some(one) = row(first, particles, 1) else { return checks };
-    checks.push(at_most(
-        format!("{first}, 1 thread: times memory limit"),
-        one.ratio(),
-        MEMORY_LIMIT,
-    ));
     let mut ratio = |what: String, a: Option<&Row>, b: Option<&Row>, bound: f64| {
         if let (Some(a), Some(b)) = (a, b) {
             checks.push(at_most(what, paired(&a.samples, &b.samples), bound));
@@ -99,24 +124,30 @@ fn judge_scene(target: &Target, rows: &[Row], particles: usize, checks: &mut Vec
     let scene = target.scene;
     let row = |threads| find(rows, scene, particles, threads);
     for (threads, bound) in [1, 2].into_iter().zip(target.nanoseconds) {
-        let Some(row) = row(threads) else { continue };
-        let threads = if threads == 1 { "1 thread" } else { "2 threads" };
-        checks.push(at_most(format!("{scene}, {threads}: ns"), row.nanoseconds(), bound));
-        checks.push(at_most(format!("{scene}, {threads}: bytes"), row.bytes, target.bytes));
-        if scene.ends_with("flow")
-            && let Some(share) = row.stages["locate"].as_f64()
-        {
-            checks.push(at_most(format!("{scene}, {threads}: share of locate"), share, LOCATE));
+        let Some(this) = row(threads) else { continue };
+        let what = if threads == 1 { "1 thread" } else { "2 threads" };
+        if let Some(one) = row(1) {
+            let ratio = this.ratio_at(&one.bandwidth);
+            let of = if threads == 1 { "" } else { " of one" };
+            let what = format!("{scene}, {what}: times memory limit{of}");
+            checks.push(at_most(what, ratio, times_limit(bound)));
         }
+        checks.push(at_most(format!("{scene}, {what}: bytes"), this.bytes, target.bytes));
+        if target.flows
+            && let Some(share) = this.stages["locate"].as_f64()
+        {
+            checks.push(at_most(format!("{scene}, {what}: share of locate"), share, LOCATE));
+        }
+        checks.push(Check {
+            what: format!("{scene}, {what}: ns"),
+            figure: this.nanoseconds(),
+            bound: format!("{bound} at {} GB/s", COPY / 1e9),
+            verdict: Verdict::Informs,
+        });
     }
     if let (Some(one), Some(two)) = (row(1), row(2)) {
         let figure = paired(&one.samples, &two.samples);
-        checks.push(Check {
-            what: format!("{scene}: times faster with 2 threads"),
-            figure,
-            bound: format!("≥ {SPEED_UP}"),
-            holds: figure >= SPEED_UP,
-        });
+        checks.push(at_least(format!("{scene}: times faster with 2 threads"), figure, SPEED_UP));
     }
 }
 
@@ -126,16 +157,21 @@ fn find<'a>(rows: &'a [Row], scene: &str, asked: usize, threads: usize) -> Optio
 
 /// A figure that must not exceed its bound.
 pub fn at_most(what: String, figure: f64, bound: f64) -> Check {
-    Check { what, figure, bound: format!("≤ {bound}"), holds: figure <= bound }
+    Check { what, figure, bound: format!("≤ {bound}"), verdict: verdict(figure <= bound) }
 }
 
 /// A figure that must reach its bound.
 pub fn at_least(what: String, figure: f64, bound: f64) -> Check {
-    Check { what, figure, bound: format!("≥ {bound}"), holds: figure >= bound }
+    Check { what, figure, bound: format!("≥ {bound}"), verdict: verdict(figure >= bound) }
+}
+
+fn verdict(holds: bool) -> Verdict {
+    if holds { Verdict::Holds } else { Verdict::Missed }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::scenes::SCENES;
     use super::*;
 
     fn row(scene: &str, asked: usize, threads: usize, samples: &[f64]) -> Row {
@@ -154,21 +190,35 @@ mod tests {
 
     #[test]
     fn rows_that_are_there_are_judged_round_by_round() {
+        use Verdict::{Holds, Informs, Missed};
         let first = APIC_ELASTIC.name;
+        let mut two = row(first, 1000, 2, &[25.0, 50.0, 40.0]);
+        two.bandwidth.fill(80e9); // must not count: the limit is that of one thread
         let rows = [
             row(first, 1000, 1, &[50.0, 100.0, 50.0]),
-            row(first, 1000, 2, &[25.0, 50.0, 40.0]),
+            two,
             row(first, 4000, 1, &[55.0, 110.0, 55.0]),
         ];
         let checks = judge(&rows, 1000, None);
         let of = |text: &str| {
             let found = checks.iter().find(|check| check.what.contains(text));
-            found.map(|check| (check.figure, check.holds))
+            found.map(|check| (check.figure, check.verdict))
         };
-        assert_eq!(of("1 thread: ns"), Some((50.0, true)));
-        assert_eq!(of("times faster"), Some((2.0, true)));
-        assert_eq!(of("times memory limit"), Some((5.0, true)));
-        assert_eq!(of("4 times as many"), Some((1.1, false)));
+        assert_eq!(of("1 thread: ns"), Some((50.0, Informs)));
+        assert_eq!(of("1 thread: times memory limit"), Some((5.0, Holds)));
+        assert_eq!(of("2 threads: times memory limit of one"), Some((4.0, Missed)));
+        assert_eq!(of("times faster"), Some((2.0, Holds)));
+        assert_eq!(of("4 times as many"), Some((1.1, Missed)));
         assert_eq!(of("1000 times larger"), None);
+    }
+
+    #[test]
+    fn no_bound_is_easier_than_its_nanoseconds_were() {
+        for ns in TARGETS.iter().flat_map(|target| target.nanoseconds) {
+            let back = times_limit(ns) * MOVED / COPY * 1e9;
+            assert!(back <= ns && back > 0.99 * ns, "{ns} became {back}");
+        }
+        let scenes = SCENES.iter().map(|scene| scene.name);
+        assert!(scenes.eq(TARGETS.iter().map(|target| target.scene)));
     }
 }
