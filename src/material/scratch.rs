@@ -7,7 +7,9 @@ use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_O
 use crate::background::TileNode;
 use crate::material::{Input, Kinematics, Material, Model, StressBatch};
 use crate::memory::{Aligned, stride_of};
-use crate::particles::{CHUNK, Layout};
+
+/// Points for which a thread makes room at once.
+const POINTS: usize = 512;
 
 /// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
 pub struct Scratch<'a> {
@@ -19,8 +21,12 @@ pub struct Scratch<'a> {
     pub velocity_gradient: &'a mut [f64],
     /// Δε [–], 6 components.
     pub strain_increment: &'a mut [f64],
-    /// F at the end of the step [–], 9 components.
+    /// F at the end of the step [–], 9 components, if the particles carry it or the model asks for it.
     pub deformation_gradient: &'a mut [f64],
+    /// Edge lengths of the domains at the end [m], if the particles carry them.
+    pub size1: &'a mut [f64],
+    /// Volume at the end [m³].
+    pub volume1: &'a mut [f64],
     /// σ at the start, rotated if the model asks for that [Pa], 6 components.
     pub stress0: &'a mut [f64],
     /// σ at the end [Pa], 6 components.
@@ -41,7 +47,17 @@ pub struct Scratch<'a> {
     pub dt_factor: &'a mut [f64],
     /// Status per point.
     pub status: &'a mut [i32],
-    model: &'static Model,
+    /// The model.
+    pub model: &'static Model,
+}
+
+/// What particles carry beside what their model asks for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Carried {
+    /// Whether they carry F.
+    pub deformation_gradient: bool,
+    /// Components of the sizes of their domains.
+    pub sizes: usize,
 }
 
 impl Scratch<'_> {
@@ -50,49 +66,6 @@ impl Scratch<'_> {
     pub fn input(&mut self, input: Input) -> Option<&mut [f64]> {
         let place = self.model.input(input)?;
         Some(&mut self.inputs[place * self.stride..][..self.stride])
-    }
-
-    /// Fills the inputs that the model wants, but density, from columns of particles.
-    pub fn fill_inputs<'c>(
-        &mut self,
-        layout: &Layout,
-        column: impl Fn(usize) -> &'c [f64],
-        ids: &[i64],
-        spacing: f64,
-    ) {
-        let (n, stride) = (self.n, self.stride);
-        for (values, input) in self.inputs.chunks_mut(stride).zip(&self.model.inputs) {
-            let values = &mut values[..n];
-            let axes = layout.velocity - layout.position;
-            match input {
-                Input::Density => {}
-                Input::ElementLength => values.fill(spacing),
-                Input::Temperature => values.copy_from_slice(column(layout.temperature)),
-                Input::PorePressure => values.copy_from_slice(column(layout.pore_pressure)),
-                Input::InternalEnergy => {
-                    let pairs = column(layout.strain_energy).iter().zip(column(layout.mass));
-                    values.iter_mut().zip(pairs).for_each(|(value, (energy, mass))| {
-                        *value = energy / mass;
-                    });
-                }
-                Input::PositionZ if axes < 3 => values.fill(0.0),
-                Input::PositionX | Input::PositionY | Input::PositionZ => {
-                    let axis = *input as usize - Input::PositionX as usize;
-                    values.copy_from_slice(column(layout.position + axis));
-                }
-                Input::ParticleId => {
-                    values.iter_mut().zip(ids).for_each(|(value, id)| *value = *id as f64);
-                }
-            }
-        }
-    }
-
-    /// Fills the density from columns of particles, if the model wants it.
-    pub fn fill_density<'c>(&mut self, layout: &Layout, column: impl Fn(usize) -> &'c [f64]) {
-        if let Some(density) = self.input(Input::Density) {
-            let pairs = column(layout.mass).iter().zip(column(layout.volume));
-            density.iter_mut().zip(pairs).for_each(|(value, (m, v))| *value = m / v);
-        }
     }
 
     /// The start stress of point k.
@@ -104,6 +77,7 @@ impl Scratch<'_> {
     pub fn batch(&mut self) -> StressBatch<'_> {
         let asked = |wanted, slice| if wanted { slice } else { &[][..] };
         let velocity_gradient = self.model.kinematics == Kinematics::VelocityGradient;
+        let gradient = self.model.kinematics == Kinematics::DeformationGradient;
         StressBatch {
             n: self.n,
             stride: self.stride,
@@ -115,7 +89,7 @@ impl Scratch<'_> {
                 &*self.strain_increment,
             ),
             velocity_gradient: asked(velocity_gradient, &*self.velocity_gradient),
-            deformation_gradient: &*self.deformation_gradient,
+            deformation_gradient: asked(gradient, &*self.deformation_gradient),
             stress0: &*self.stress0,
             state0: &*self.state0,
             stress1: &mut *self.stress1,
@@ -154,7 +128,7 @@ pub fn with_scratch<R>(
     n: usize,
     work: impl FnOnce(&mut Scratch<'_>) -> R,
 ) -> R {
-    with_buffers(0, |points, _| work(&mut points.scratch(material, n)))
+    with_buffers(0, |points, _| work(&mut points.scratch(material, n, Carried::default())))
 }
 
 /// Calls `work` with this thread's room for points and for a tile of `tile_nodes` nodes.
@@ -172,16 +146,19 @@ pub fn with_buffers<R>(
 
 impl Points {
     /// The scratch for `n` points of a material.
-    pub fn scratch(&mut self, material: &Material, n: usize) -> Scratch<'_> {
+    pub fn scratch(&mut self, material: &Material, n: usize, carried: Carried) -> Scratch<'_> {
         let model = material.model();
         let stride = stride_of(n);
         let state = model.state_components();
         let gives = |output| usize::from(model.outputs & output != 0);
-        let gradient = if model.kinematics == Kinematics::DeformationGradient { 9 } else { 0 };
+        let asked = model.kinematics == Kinematics::DeformationGradient;
+        let gradient = if asked || carried.deformation_gradient { 9 } else { 0 };
         let sizes = [
             9,
             6,
             gradient,
+            carried.sizes,
+            1,
             6,
             6,
             state,
@@ -194,11 +171,11 @@ impl Points {
         ];
         let needed = sizes.iter().sum::<usize>() * stride;
         if self.doubles.as_slice().len() < needed {
-            let room = Aligned::zeroed(needed.max(64 * CHUNK));
+            let room = Aligned::zeroed(needed.max(64 * POINTS));
             self.doubles = room.expect("scratch of a chunk is small");
         }
         if self.status.len() < stride {
-            self.status.resize(stride.max(CHUNK + 8), 0);
+            self.status.resize(stride.max(POINTS + 8), 0);
         }
         let mut rest = self.doubles.as_mut_slice();
         let mut parts = sizes.map(|components| {
@@ -216,6 +193,8 @@ impl Points {
             velocity_gradient: take(),
             strain_increment: take(),
             deformation_gradient: take(),
+            size1: take(),
+            volume1: take(),
             stress0: take(),
             stress1: take(),
             state0: take(),

@@ -47,6 +47,6 @@ pub struct Body {
 impl Body {
     /// Whether the body has F-bar.
     pub fn has_f_bar(&self) -> bool {
-        self.particles.layout.has_dilation()
+        self.particles.layout.dilation.is_some()
     }
 }

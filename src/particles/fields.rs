@@ -1,8 +1,13 @@
-//! The registry of particle fields: name, unit and shape of everything a particle carries.
+//! The table of particle fields: name, shape, unit and writer of everything a particle carries, and which
+//! bodies carry it. A new field is a line of [`Layout`].
 //!
 //! Writers, views, copies and documentation iterate it; the state variables of a body's model follow behind.
 
 use std::ffi::CStr;
+
+use crate::material::{Input, Model};
+use crate::shape::ShapeKind;
+use crate::transfer::TransferKind;
 
 /// What hosts may know of a field.
 #[derive(Clone, Copy, Debug)]
@@ -19,165 +24,250 @@ pub struct FieldInfo {
     pub writable: bool,
 }
 
-/// Where each field starts among the columns of a body.
+/// Columns that follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout {
-    /// Position [m], D components.
-    pub position: usize,
-    /// Velocity [m/s], D components.
-    pub velocity: usize,
-    /// Mass [kg].
-    pub mass: usize,
-    /// Current volume [m³].
-    pub volume: usize,
-    /// Cauchy stress [Pa], 6 components.
-    pub stress: usize,
-    /// Strain energy [J].
-    pub strain_energy: usize,
-    /// Temperature [K]; none unless the model wants it.
-    pub temperature: usize,
-    /// Pore pressure, compression positive [Pa]; none unless the model wants it.
-    pub pore_pressure: usize,
-    /// Rate of growth that F-bar averages [1/s]; none unless the body has F-bar.
-    pub dilation: usize,
-    /// Edge lengths of the domain [m], D components; none unless the shape function is sized.
-    pub size: usize,
-    /// Body force per mass [N/kg], D components; none unless the world has it.
-    pub body_force: usize,
-    /// Affine velocity matrix [1/s], D·D components, row-major; none unless the transfer is affine.
-    pub affine: usize,
-    /// Velocity on its way through a filter [m/s], D components; none unless the transfer is filtered.
-    pub filtered: usize,
-    /// Deformation gradient [–], 9 components, row-major; none unless the model asks for it.
-    pub deformation_gradient: usize,
-    /// State variables of the model.
-    pub state: usize,
-    end: usize,
+pub struct Columns {
+    /// The first.
+    pub first: usize,
+    /// How many.
+    pub count: usize,
 }
 
-/// What a body carries beside what all have.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Extras {
-    /// Temperature.
-    pub temperature: bool,
-    /// Pore pressure.
-    pub pore_pressure: bool,
-    /// Rate of growth.
-    pub dilation: bool,
-    /// Edge lengths of the domain.
-    pub size: bool,
-    /// Body force.
+impl Columns {
+    /// Whether a column is one of them.
+    pub fn contains(&self, column: usize) -> bool {
+        (self.first..self.first + self.count).contains(&column)
+    }
+}
+
+/// What decides which fields a body carries.
+#[derive(Clone, Copy)]
+pub struct Carrier<'a> {
+    /// Number of axes.
+    pub dimension: usize,
+    /// Shape function of the world.
+    pub shape: ShapeKind,
+    /// Transfer scheme of the world.
+    pub transfer: TransferKind,
+    /// Whether the world has body forces.
     pub body_force: bool,
-    /// Affine matrix.
-    pub affine: bool,
-    /// Filtered velocity.
-    pub filtered: bool,
-    /// Deformation gradient.
-    pub gradient: bool,
-    /// Components of the model's state.
-    pub state: usize,
+    /// Whether the body has F-bar.
+    pub f_bar: bool,
+    /// The body's model.
+    pub model: &'a Model,
+}
+
+impl Carrier<'_> {
+    fn wants(&self, input: Input) -> bool {
+        self.model.input(input).is_some()
+    }
+
+    fn carries_deformation_gradient(&self) -> bool {
+        let stretches = self.shape == ShapeKind::ContiguousGimp;
+        self.model.kinematics.carries_deformation_gradient() || stretches
+    }
+}
+
+/// Shape of a field: how many components it has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shape {
+    Scalar,
+    /// Along the axes of the world.
+    Vector,
+    /// xx, yy, zz, xy, yz, zx.
+    Symmetric,
+    /// Along the axes of the world, row-major.
+    Matrix,
+    /// Along three axes, row-major.
+    Tensor,
+}
+
+impl Shape {
+    const fn components(self, dimension: usize) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector => dimension,
+            Self::Symmetric => 6,
+            Self::Matrix => dimension * dimension,
+            Self::Tensor => 9,
+        }
+    }
+}
+
+/// Who writes a field.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Writer {
+    /// The engine, and hosts, who see it too.
+    Host,
+    /// The engine alone; hosts do not see it.
+    Engine,
+}
+
+/// What the columns of a body must hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Any number that is finite.
+    Finite,
+    /// A number above zero that is finite.
+    Positive,
+}
+
+impl Rule {
+    /// In words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Finite => "finite",
+            Self::Positive => "positive and finite",
+        }
+    }
+}
+
+/// The table. A line has name, shape, unit, writer, rule and a sentence; what some bodies lack also has the
+/// condition under which a body carries it.
+macro_rules! fields {
+    (
+        always { $($name:ident: $shape:ident [$unit:literal], $writer:ident, $rule:ident, $text:literal;)+ }
+        sometimes {
+            $($some:ident: $some_shape:ident [$some_unit:literal], $some_writer:ident, $some_rule:ident,
+                $some_text:literal, $when:expr;)+
+        }
+    ) => {
+        /// Where the fields of a body stand among its columns.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct Layout {
+            $(#[doc = concat!($text, " [", $unit, "]: its first column.")] pub $name: usize,)+
+            $(#[doc = concat!($some_text, " [", $some_unit, "], if the body carries it.")]
+            pub $some: Option<Columns>,)+
+            /// State variables of the model.
+            pub state: Columns,
+        }
+
+        impl Layout {
+            /// Columns of a body.
+            pub fn new(carrier: &Carrier<'_>) -> Self {
+                let mut end = 0;
+                let mut take = |count: usize| {
+                    end += count;
+                    Columns { first: end - count, count }
+                };
+                let dimension = carrier.dimension;
+                Self {
+                    $($name: take(Shape::$shape.components(dimension)).first,)+
+                    $($some: {
+                        let when: fn(&Carrier<'_>) -> bool = $when;
+                        when(carrier).then(|| take(Shape::$some_shape.components(dimension)))
+                    },)+
+                    state: take(carrier.model.state_components()),
+                }
+            }
+
+            /// All fields of the engine: columns, whether hosts see them, rule, and what hosts may know.
+            fn all(&self, dimension: usize) -> Vec<(Columns, Writer, Rule, FieldInfo)> {
+                let mut list = Vec::new();
+                $(list.push({
+                    let count = Shape::$shape.components(dimension);
+                    let columns = Columns { first: self.$name, count };
+                    let (name, unit) = (name!($name), name!($unit));
+                    (columns, Writer::$writer, Rule::$rule, info(name, unit, name!($text), count))
+                });)+
+                $(if let Some(columns) = self.$some {
+                    let (name, unit) = (name!($some), name!($some_unit));
+                    let info = info(name, unit, name!($some_text), columns.count);
+                    list.push((columns, Writer::$some_writer, Rule::$some_rule, info));
+                })+
+                list
+            }
+
+            /// Every field that both layouts have, as pairs of columns in this one and in the other.
+            pub fn shared_with(&self, other: &Self, dimension: usize) -> Vec<(usize, usize)> {
+                let mut pairs = Vec::new();
+                let mut pair = |from: usize, to: usize, count: usize| {
+                    pairs.extend((0..count).map(|c| (from + c, to + c)));
+                };
+                $(pair(self.$name, other.$name, Shape::$shape.components(dimension));)+
+                $(if let (Some(from), Some(to)) = (self.$some, other.$some) {
+                    pair(from.first, to.first, from.count);
+                })+
+                pair(self.state.first, other.state.first, self.state.count);
+                pairs
+            }
+        }
+    };
+}
+
+/// A text of the table for C.
+macro_rules! name {
+    ($text:ident) => {
+        name!(stringify!($text))
+    };
+    ($text:expr) => {
+        const {
+            match CStr::from_bytes_with_nul(concat!($text, "\0").as_bytes()) {
+                Ok(text) => text,
+                Err(_) => panic!("a text of the table of fields has a zero inside"),
+            }
+        }
+    };
+}
+
+const fn info(
+    name: &'static CStr,
+    unit: &'static CStr,
+    description: &'static CStr,
+    components: usize,
+) -> FieldInfo {
+    FieldInfo { name, unit, description, components, writable: true }
+}
+
+fields! {
+    always {
+        position: Vector ["m"], Host, Finite, "Position";
+        velocity: Vector ["m/s"], Host, Finite, "Velocity";
+        mass: Scalar ["kg"], Host, Positive, "Mass";
+        volume: Scalar ["m^3"], Host, Positive, "Current volume";
+        stress: Symmetric ["Pa"], Host, Finite,
+            "Cauchy stress xx, yy, zz, xy, yz, zx, tension positive";
+        strain_energy: Scalar ["J"], Host, Finite,
+            "Work of the stress on the strain since the start, or the model's own energy";
+    }
+    sometimes {
+        temperature: Scalar ["K"], Host, Finite, "Temperature, 293.15 until the host writes it",
+            |body| body.wants(Input::Temperature);
+        pore_pressure: Scalar ["Pa"], Host, Finite, "Pore pressure, compression positive",
+            |body| body.wants(Input::PorePressure);
+        dilation: Scalar ["1/s"], Engine, Finite, "Rate of growth that F-bar averages",
+            |body| body.f_bar;
+        size: Vector ["m"], Host, Positive, "Edge lengths of the particle's domain",
+            |body| body.shape.is_sized();
+        body_force: Vector ["N/kg"], Host, Finite, "Body force per mass, added to gravity",
+            |body| body.body_force;
+        affine: Matrix ["1/s"], Host, Finite, "Affine velocity matrix, row-major",
+            |body| body.transfer.is_affine();
+        filtered: Vector ["m/s"], Engine, Finite, "Velocity on its way through a filter",
+            |body| body.transfer.is_filtered();
+        deformation_gradient: Tensor ["-"], Host, Finite, "Deformation gradient, row-major",
+            |body| body.carries_deformation_gradient();
+    }
 }
 
 impl Layout {
-    /// Columns of a body in `dimension` axes.
-    pub fn new(dimension: usize, extras: &Extras) -> Self {
-        let Extras { temperature, pore_pressure, dilation, size, body_force, .. } = *extras;
-        let Extras { affine, filtered, gradient, state, .. } = *extras;
-        let mut end = 0;
-        let mut take = |components: usize| {
-            end += components;
-            end - components
-        };
-        let mut layout = Self {
-            position: take(dimension),
-            velocity: take(dimension),
-            mass: take(1),
-            volume: take(1),
-            stress: take(6),
-            strain_energy: take(1),
-            temperature: take(usize::from(temperature)),
-            pore_pressure: take(usize::from(pore_pressure)),
-            dilation: take(usize::from(dilation)),
-            size: take(if size { dimension } else { 0 }),
-            body_force: take(if body_force { dimension } else { 0 }),
-            affine: take(if affine { dimension * dimension } else { 0 }),
-            filtered: take(if filtered { dimension } else { 0 }),
-            deformation_gradient: take(if gradient { 9 } else { 0 }),
-            state: take(state),
-            end: 0,
-        };
-        layout.end = end;
-        layout
-    }
-
-    /// Whether the body has F-bar.
-    pub fn has_dilation(&self) -> bool {
-        self.size > self.dilation
-    }
-
     /// Number of columns.
     pub fn components(&self) -> usize {
-        self.end
+        self.state.first + self.state.count
     }
 
-    /// Number of columns of the model's state.
-    pub fn state_components(&self) -> usize {
-        self.end - self.state
-    }
-
-    /// The engine's fields with their first columns, in the order of enumeration.
+    /// The engine's fields that hosts see, with their first columns, in the order of enumeration.
     pub fn fields(&self, dimension: usize) -> Vec<(FieldInfo, usize)> {
-        let field = |name, unit, description, first, components, writable| {
-            (FieldInfo { name, unit, description, components, writable }, first)
-        };
-        let mut list = vec![
-            field(c"position", c"m", c"Position", self.position, dimension, true),
-            field(c"velocity", c"m/s", c"Velocity", self.velocity, dimension, true),
-            field(c"mass", c"kg", c"Mass", self.mass, 1, true),
-            field(c"volume", c"m^3", c"Current volume", self.volume, 1, true),
-            field(
-                c"stress",
-                c"Pa",
-                c"Cauchy stress xx, yy, zz, xy, yz, zx, tension positive",
-                self.stress,
-                6,
-                true,
-            ),
-            field(
-                c"strain_energy",
-                c"J",
-                c"Work of the stress on the strain since the start, or the model's own energy",
-                self.strain_energy,
-                1,
-                true,
-            ),
-        ];
-        if self.pore_pressure > self.temperature {
-            let text = c"Temperature, 293.15 until the host writes it";
-            list.push(field(c"temperature", c"K", text, self.temperature, 1, true));
-        }
-        if self.dilation > self.pore_pressure {
-            let text = c"Pore pressure, compression positive";
-            list.push(field(c"pore_pressure", c"Pa", text, self.pore_pressure, 1, true));
-        }
-        if self.body_force > self.size {
-            let text = c"Edge lengths of the particle's domain";
-            list.push(field(c"size", c"m", text, self.size, dimension, true));
-        }
-        if self.affine > self.body_force {
-            let text = c"Body force per mass, added to gravity";
-            list.push(field(c"body_force", c"N/kg", text, self.body_force, dimension, true));
-        }
-        let affine = self.filtered - self.affine;
-        if affine > 0 {
-            let text = c"Affine velocity matrix, row-major";
-            list.push(field(c"affine", c"1/s", text, self.affine, affine, true));
-        }
-        if self.state > self.deformation_gradient {
-            let (text, first) = (c"Deformation gradient, row-major", self.deformation_gradient);
-            list.push(field(c"deformation_gradient", c"-", text, first, 9, true));
-        }
-        list
+        let all = self.all(dimension).into_iter();
+        let seen = all.filter(|(_, writer, ..)| *writer == Writer::Host);
+        seen.map(|(columns, _, _, info)| (info, columns.first)).collect()
+    }
+
+    /// What a column must hold, and the name of its field.
+    pub fn rule_of(&self, dimension: usize, column: usize) -> (Rule, &'static CStr) {
+        let all = self.all(dimension);
+        let found = all.iter().find(|(columns, ..)| columns.contains(column));
+        found.map_or((Rule::Finite, c"a state variable"), |(_, _, rule, info)| (*rule, info.name))
     }
 }
 

@@ -7,13 +7,14 @@ mod body;
 pub mod chunk;
 pub mod dilations;
 pub mod fields;
+pub mod inputs;
 pub mod moves;
 pub mod seeding;
 
 pub use body::{Body, Sizes};
 pub use chunk::{CHUNK, ChunkMut, Motion};
 pub use dilations::Dilations;
-pub use fields::{Extras, FieldInfo, Layout};
+pub use fields::{Carrier, Columns, FieldInfo, Layout, Rule};
 pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
 
 use crate::error::Result;
@@ -87,13 +88,14 @@ impl Particles {
         self.moved.fill(0);
     }
 
-    /// What the averaging of F-bar takes; the body must have it.
-    pub fn dilations<const D: usize>(&mut self) -> Dilations<'_, D> {
+    /// What the averaging of F-bar takes; None for a body without it.
+    pub fn dilations<const D: usize>(&mut self) -> Option<Dilations<'_, D>> {
         let (layout, stride, n) = (self.layout, self.stride, self.len());
-        let (before, rates) = self.data.as_mut_slice().split_at_mut(layout.dilation * stride);
+        let first = layout.dilation?.first;
+        let (before, rates) = self.data.as_mut_slice().split_at_mut(first * stride);
         let column = |c: usize| &before[c * stride..][..n];
         let position = std::array::from_fn(|d| column(layout.position + d));
-        Dilations::new(position, column(layout.volume), &mut rates[..n])
+        Some(Dilations::new(position, column(layout.volume), &mut rates[..n]))
     }
 
     /// Number of particles.

@@ -6,8 +6,11 @@
 
 pub(crate) mod environment;
 mod portable;
+mod table;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+pub use table::Table;
 
 use std::ffi::CStr;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};

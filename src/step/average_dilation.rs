@@ -44,9 +44,10 @@ pub fn average_dilation<const D: usize>(
     let pass = Pass { gather, dt: 0.0, then: Then::Rates };
     (method.kernels.pass)(bodies, background, method, team, &pass);
     let Background { space, blocks, .. } = background;
-    for body in bodies.iter_mut().filter(|body| body.has_f_bar()) {
-        let Body { particles, runs, .. } = body;
-        let mut particles = particles.dilations::<D>();
+    for Body { particles, runs, .. } in bodies {
+        let Some(mut particles) = particles.dilations::<D>() else {
+            continue;
+        };
         patches.collect(space, blocks.keys(), &mut particles, runs, team);
         let whole = Whole { space, blocks, patches };
         team.for_each(Sharing { particles, runs, first: 0 }, |part| whole.share(part));
@@ -56,12 +57,12 @@ pub fn average_dilation<const D: usize>(
 /// Turns the velocity gradients of a chunk into those of F-bar.
 pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_>, axisymmetric: bool) {
     let Piece { chunk, scratch, .. } = piece;
-    if !chunk.layout.has_dilation() {
+    let Some(dilation) = chunk.layout.dilation else {
         return;
-    }
+    };
     let axes = if axisymmetric { 3 } else { D };
     let (stride, l) = (scratch.stride, &mut *scratch.velocity_gradient);
-    for (k, mean) in chunk.column(chunk.layout.dilation).iter().enumerate() {
+    for (k, mean) in chunk.column(dilation.first).iter().enumerate() {
         let trace = l[k] + l[4 * stride + k] + l[8 * stride + k];
         for a in 0..axes {
             l[4 * a * stride + k] += (mean - trace) / axes as f64; // [STR-16]
@@ -72,8 +73,11 @@ pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_>, axisymmetric: b
 /// Stores the trace of the velocity gradient of every particle of a chunk.
 pub fn store_rates(piece: &mut Piece<'_, '_>) {
     let Piece { chunk, scratch, .. } = piece;
+    let Some(dilation) = chunk.layout.dilation else {
+        return;
+    };
     let (stride, l) = (scratch.stride, &*scratch.velocity_gradient);
-    for (k, rate) in chunk.column_mut(chunk.layout.dilation).iter_mut().enumerate() {
+    for (k, rate) in chunk.column_mut(dilation.first).iter_mut().enumerate() {
         *rate = l[k] + l[4 * stride + k] + l[8 * stride + k];
     }
 }

@@ -122,7 +122,7 @@ pub fn gather<S: ShapeFunction<N>, const N: usize, const D: usize>(
         pic_share: pic_flip::pic_share(method.options.pic_rate, pass.dt),
         dt: pass.dt,
         stride: scratch.stride,
-        size: chunk.layout.size - chunk.layout.mass,
+        size: chunk.layout.size.map_or(0, |size| size.first - chunk.layout.mass),
         axisymmetric: method.options.axisymmetric,
     };
     let gradient = &mut *scratch.velocity_gradient;

@@ -12,17 +12,19 @@
 //! | 4b | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
 //! | 4c | average the dilation | tr L_p of bodies with F-bar | [`average_dilation`](mod@average_dilation) |
 //! | 5 | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
-//! | 6 | update the strain | Δε_p, V_p, F_p, rotated σ_p | [`update_strain`](mod@update_strain) |
+//! | 6 | update the strain | Δε_p, V_p, F_p, rotated σ_p, in scratch | [`update_strain`](mod@update_strain) |
 //! | 6b | update the domain | edges of contiguous-particle GIMP | [`update_domain`](mod@update_domain) |
-//! | 7 | update the stress | σ_p, state, wave speed | [`update_stress`](mod@update_stress) |
+//! | 7 | update the stress | σ_p, state, wave speed, in scratch | [`update_stress`](mod@update_stress) |
+//! | 8 | commit | particles take over what 6 and 7 left in scratch | [`commit`](mod@commit) |
 //!
-//! Stages 5 to 7 go over a chunk of particles while it is in cache, in one [`pass`](mod@pass). The orders
+//! Stages 5 to 8 go over a chunk of particles while it is in cache, in one [`pass`](mod@pass). The orders
 //! below are the only functions that see all [`parts`] of a world; a stage takes those that it reads and
 //! writes. [`naive`] is the same step as the textbook writes it.
 
 pub mod apply_boundaries;
 pub mod apply_tractions;
 pub mod average_dilation;
+pub mod commit;
 pub mod filter_velocities;
 pub mod freshness;
 pub mod grid_to_particles;

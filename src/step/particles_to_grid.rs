@@ -308,21 +308,21 @@ impl<'a, const D: usize> Columns<'a, D> {
     fn new(particles: &'a Particles, run: &Run, what: Scattered) -> Self {
         let layout = &particles.layout;
         let (first, end) = (run.first as usize, run.end as usize);
-        let row = |a: usize| particles.read(layout.affine + a * D, first, end);
-        let velocity = if what == Scattered::Filtered { layout.filtered } else { layout.velocity };
-        let affine = layout.filtered > layout.affine;
-        let sized = layout.body_force > layout.size;
-        let body_force = layout.affine > layout.body_force && what == Scattered::Everything;
         let vector = |component: usize| particles.read(component, first, end);
+        let velocity = match layout.filtered {
+            Some(filtered) if what == Scattered::Filtered => filtered.first,
+            _ => layout.velocity,
+        };
+        let body_force = layout.body_force.filter(|_| what == Scattered::Everything);
         Self {
-            position: particles.read(layout.position, first, end),
-            velocity: particles.read(velocity, first, end),
+            position: vector(layout.position),
+            velocity: vector(velocity),
             mass: particles.read::<1>(layout.mass, first, end)[0],
             volume: particles.read::<1>(layout.volume, first, end)[0],
             stress: particles.read(layout.stress, first, end),
-            affine: affine.then(|| std::array::from_fn(row)),
-            size: if sized { vector(layout.size) } else { [&[]; D] },
-            body_force: body_force.then(|| vector(layout.body_force)),
+            affine: layout.affine.map(|c| std::array::from_fn(|a| vector(c.first + a * D))),
+            size: layout.size.map_or([&[]; D], |size| vector(size.first)),
+            body_force: body_force.map(|force| vector(force.first)),
         }
     }
 

@@ -1,15 +1,17 @@
 //! A pass over the particles, chunk by chunk while they are in cache: stages 5 to 8.
 
 use super::average_dilation::{share_dilation, store_rates};
+use super::commit::commit;
 use super::grid_to_particles::{Gather, gather};
 use super::parts::Method;
 use super::update_strain::update_strain;
-use super::update_stress::{Outcome, update_stress};
+use super::update_stress::{Answer, Failure, Outcome, update_stress};
 use crate::background::{Background, TileNode};
 use crate::material::Material;
-use crate::material::scratch::{Points, Scratch, with_buffers};
+use crate::material::scratch::{Carried, Points, Scratch, with_buffers};
 use crate::parallel::Team;
 use crate::particles::{Body, ChunkMut};
+use crate::shape::ShapeKind;
 use crate::shape::stencil::ShapeFunction;
 
 /// What a pass does.
@@ -100,12 +102,16 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
         }
         let Body { id, material, particles, runs, .. } = body;
         let (ids, all) = particles.ids_and_chunk();
+        let carried = Carried {
+            deformation_gradient: all.layout.deformation_gradient.is_some(),
+            sizes: if method.options.shape == ShapeKind::ContiguousGimp { D } else { 0 },
+        };
         let on_task = |task: ChunkMut<'_>| {
             with_buffers(tile_nodes, |points: &mut Points, tile| {
                 let mut of_task = Outcome::default();
                 let mut copied = Copied { tile, block: None };
                 task.for_each_chunk(|chunk| {
-                    let scratch = points.scratch(material, chunk.len);
+                    let scratch = points.scratch(material, chunk.len, carried);
                     let piece = &mut Piece { chunk, scratch, body: *id, ids, material };
                     method.lap(ChunkStage::Start);
                     gather::<S, N, D>(piece, (background, runs), &mut copied, method, pass);
@@ -134,13 +140,25 @@ fn after_gather<const D: usize>(
         }
         Then::Stress(moment) => {
             share_dilation::<D>(piece, method.options.axisymmetric);
-            update_strain::<D>(piece, method, moment.dt);
-            method.lap(ChunkStage::Strained);
-            let outcome = update_stress::<D>(piece, method.isa, moment);
+            let outcome = match evaluate::<D>(piece, method, moment) {
+                Ok(answer) => commit::<D>(piece, method.isa, moment, answer),
+                Err(failure) => Outcome::failed(failure),
+            };
             method.lap(ChunkStage::Stressed);
             outcome
         }
     }
+}
+
+/// Strain and stress of a chunk over a moment, in scratch: what an implicit solver calls as often as it likes.
+pub fn evaluate<const D: usize>(
+    piece: &mut Piece<'_, '_>,
+    method: &Method<D>,
+    moment: Moment,
+) -> Result<Answer, Box<Failure>> {
+    update_strain::<D>(piece, method, moment.dt);
+    method.lap(ChunkStage::Strained);
+    update_stress::<D>(piece, moment)
 }
 
 impl<const D: usize> Method<D> {

@@ -13,6 +13,7 @@ use crate::boundary::table::length;
 use crate::error::{Error, Place, Result, Status};
 use crate::material::StressBatch;
 use crate::material::scratch::with_scratch;
+use crate::particles::inputs::{fill_density, fill_inputs};
 use crate::particles::{Body, CHUNK};
 
 /// What limits the next time step.
@@ -89,18 +90,21 @@ fn limits_of_chunk<const D: usize>(
             s.stress0[c * s.stride..][..n]
                 .copy_from_slice(&particles.column(layout.stress + c)[first..first + n]);
         }
-        for c in 0..layout.state_components() {
+        for c in 0..layout.state.count {
             s.state0[c * s.stride..][..n]
-                .copy_from_slice(&particles.column(layout.state + c)[first..first + n]);
+                .copy_from_slice(&particles.column(layout.state.first + c)[first..first + n]);
         }
-        for c in 0..s.deformation_gradient.len() / s.stride {
-            s.deformation_gradient[c * s.stride..][..n].copy_from_slice(
-                &particles.column(layout.deformation_gradient + c)[first..first + n],
-            );
+        if let Some(gradient) =
+            layout.deformation_gradient.filter(|_| !s.deformation_gradient.is_empty())
+        {
+            for c in 0..gradient.count {
+                s.deformation_gradient[c * s.stride..][..n]
+                    .copy_from_slice(&particles.column(gradient.first + c)[first..first + n]);
+            }
         }
         let column = |c: usize| &particles.column(c)[first..first + n];
-        s.fill_density(&layout, column);
-        s.fill_inputs(&layout, column, &particles.id[first..first + n], spacing);
+        fill_density(s, &layout, column);
+        fill_inputs(s, &layout, column, &particles.id[first..first + n], spacing);
         let mut batch = StressBatch { dt: 0.0, time: 0.0, ..s.batch() };
         body.material
             .wave_speed(&mut batch)

@@ -5,31 +5,32 @@
 //! Appl. Mech. Engrg. 358 (2020) 112622, doi:10.1016/j.cma.2019.112622.
 
 use super::pass::Piece;
-use super::update_strain::{deformation_gradient, deformed, gradient};
+use super::update_strain::{deformation_gradient, deformed};
 use crate::simd::{Isa, Kernel, LANES, Vector};
 use crate::tensor::stretch_diagonal;
 
-/// Updates the edges of the particles of a chunk, whose deformation gradients are still those of the start.
-pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_>, isa: Isa, dt: f64) {
-    isa.dispatch(Domain::<D>(piece, dt));
+/// Finds the edges of the particles of a chunk at the end of the step, of which the deformation gradients are known.
+pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_>, isa: Isa) {
+    isa.dispatch(Domain::<D>(piece));
 }
 
-struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>, f64);
+struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>);
 
 impl<const D: usize> Kernel for Domain<'_, '_, '_, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(Piece { chunk, scratch, .. }, dt) = self;
+        let Self(Piece { chunk, scratch, .. }) = self;
+        let first = chunk.layout.size.map_or(0, |size| size.first);
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
-            let l = gradient::<V, D>(scratch.velocity_gradient, scratch.stride, (k, end));
             let old = deformation_gradient(chunk, (k, end));
             let (before, after) =
-                (stretch_diagonal(&old), stretch_diagonal(&deformed(&old, &l, dt)));
+                (stretch_diagonal(&old), stretch_diagonal::<V>(&deformed(scratch, k)));
             for d in 0..D {
-                let size = &mut chunk.column_mut(chunk.layout.size + d)[k..end];
-                (V::load(size) * after[d] / before[d]).store(size); // [SHP-6]
+                let size = V::load(&chunk.column(first + d)[k..end]);
+                let to = &mut scratch.size1[d * scratch.stride + k..][..LANES];
+                (size * after[d] / before[d]).store(to); // [SHP-6]
             }
         }
     }

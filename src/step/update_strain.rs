@@ -1,4 +1,5 @@
-//! Stage 6, strain: Δε = dt sym L, the volume, F ← (I + dt L) F, and the objective rotation of the start stress.
+//! Stage 6, strain: Δε = dt sym L, the volume, F ← (I + dt L) F, and the objective rotation of the start stress. All of it goes into
+//! scratch: particles stay as they are until a [`commit`](super::commit).
 //!
 //! The stress is turned before the material adds its increment (incrementally objective update, T. J. R. Hughes, J. Winget,
 //! Int. J. Numer. Meth. Engng 15 (1980) 1862–1867, doi:10.1002/nme.1620151210), as the model asks: by exp(W dt), W = skw L, instead
@@ -8,8 +9,10 @@
 use super::parts::Method;
 use super::pass::Piece;
 use super::update_domain::update_domain;
+use crate::material::scratch::Scratch;
 use crate::material::{Input, Kinematics, Rotation};
 use crate::particles::ChunkMut;
+use crate::particles::inputs::fill_inputs;
 use crate::shape::ShapeKind;
 use crate::simd::{Kernel, LANES, Vector, each};
 use crate::tensor::{
@@ -17,25 +20,24 @@ use crate::tensor::{
     turned_between,
 };
 
-/// Fills the chunk's scratch with what the material takes, and updates volume and deformation gradient.
+/// Fills the chunk's scratch with what the material takes, and with volume and deformation gradient at the end.
 pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_>, method: &Method<D>, dt: f64) {
     let isa = method.isa;
     copy_state(piece);
+    match piece.chunk.layout.deformation_gradient {
+        None => isa.dispatch(Strain::<D, false>(piece, dt)),
+        Some(_) => isa.dispatch(Strain::<D, true>(piece, dt)),
+    }
     let objective = |rotation| rotation == Rotation::Objective;
-    let model = piece.material.model();
-    if model.states.iter().any(|state| objective(state.rotation)) {
+    if piece.material.model().states.iter().any(|state| objective(state.rotation)) {
         isa.dispatch(RotatedState::<D>(piece, dt));
     }
     if method.options.shape == ShapeKind::ContiguousGimp {
-        update_domain::<D>(piece, isa, dt);
-    }
-    match piece.chunk.layout.state > piece.chunk.layout.deformation_gradient {
-        false => isa.dispatch(Strain::<D, false>(piece, dt)),
-        true => isa.dispatch(Strain::<D, true>(piece, dt)),
+        update_domain::<D>(piece, isa);
     }
     let Piece { chunk, scratch, ids, .. } = piece;
     let ids = &ids[chunk.first..][..chunk.len];
-    scratch.fill_inputs(&chunk.layout, |c| chunk.column(c), ids, method.options.spacing);
+    fill_inputs(scratch, &chunk.layout, |c| chunk.column(c), ids, method.options.spacing);
 }
 
 /// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the plane. Lanes without a point are zero: what
@@ -65,13 +67,20 @@ pub(super) fn deformation_gradient<V: Vector>(
     chunk: &ChunkMut<'_>,
     (k, end): (usize, usize),
 ) -> Rows<V> {
-    let first = chunk.layout.deformation_gradient;
+    let first = chunk.layout.deformation_gradient.map_or(0, |gradient| gradient.first);
     each!(a in 3, b in 3 => V::load(&chunk.column(first + 3 * a + b)[k..end]))
+}
+
+/// Those at its end.
+#[inline(always)]
+pub(super) fn deformed<V: Vector>(scratch: &Scratch<'_>, k: usize) -> Rows<V> {
+    let f = &scratch.deformation_gradient;
+    each!(a in 3, b in 3 => V::load(&f[(3 * a + b) * scratch.stride + k..][..LANES]))
 }
 
 /// (I + dt L) F.
 #[inline(always)]
-pub(super) fn deformed<V: Vector>(f: &Rows<V>, l: &Rows<V>, dt: f64) -> Rows<V> {
+fn deformed_by<V: Vector>(f: &Rows<V>, l: &Rows<V>, dt: f64) -> Rows<V> {
     each!(a in 3, b in 3 => {
         let lf = l[a][0] * f[0][b] + l[a][1] * f[1][b] + l[a][2] * f[2][b];
         lf.mul_add(V::splat(dt), f[a][b]) // [STR-2]
@@ -110,18 +119,13 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
             let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
             if F {
                 let old = deformation_gradient::<V>(chunk, (k, end));
-                let new = deformed(&old, &l, dt);
+                let new = deformed_by(&old, &l, dt);
                 for c in 0..9 {
-                    let column = &mut chunk.column_mut(layout.deformation_gradient + c)[k..end];
-                    new[c / 3][c % 3].store(column);
+                    let to = &mut scratch.deformation_gradient[c * stride + k..][..LANES];
+                    new[c / 3][c % 3].store(to);
                 }
                 if kinematics == Kinematics::GreenNaghdi {
                     stress = turned_between::<V, D>(&old, &new, stress);
-                } else if kinematics == Kinematics::DeformationGradient {
-                    for c in 0..9 {
-                        let to = &mut scratch.deformation_gradient[c * stride + k..][..LANES];
-                        new[c / 3][c % 3].store(to);
-                    }
                 }
             }
             if kinematics == Kinematics::StrainIncrement {
@@ -132,11 +136,10 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
                 stress[c].store(&mut scratch.stress0[c * stride + k..][..LANES]);
             }
             let mass = V::load(&chunk.column(layout.mass)[k..end]);
-            let volume = &mut chunk.column_mut(layout.volume)[k..end];
             let trace = increment[0] + increment[1] + increment[2];
             let ratio = if F { growth(&l, dt) } else { exp(trace) }; // [STR-3]
-            let new = V::load(volume) * ratio;
-            new.store(volume);
+            let new = V::load(&chunk.column(layout.volume)[k..end]) * ratio;
+            new.store(&mut scratch.volume1[k..][..LANES]);
             if let Some(density) = scratch.input(Input::Density) {
                 (mass / new).store(&mut density[k..][..LANES]);
             }
@@ -148,8 +151,8 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
 fn copy_state(piece: &mut Piece<'_, '_>) {
     let Piece { chunk, scratch, .. } = piece;
     let (layout, stride, n) = (chunk.layout, scratch.stride, chunk.len);
-    for c in 0..layout.state_components() {
-        scratch.state0[c * stride..][..n].copy_from_slice(chunk.column(layout.state + c));
+    for c in 0..layout.state.count {
+        scratch.state0[c * stride..][..n].copy_from_slice(chunk.column(layout.state.first + c));
     }
 }
 
@@ -172,7 +175,7 @@ impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
                     let r = match material.model().kinematics {
                         Kinematics::GreenNaghdi => {
                             let old = deformation_gradient(chunk, (k, end));
-                            rotation_between(&old, &deformed(&old, &l, dt))
+                            rotation_between(&old, &deformed(scratch, k))
                         }
                         _ => step_rotations(&l, dt),
                     };

@@ -1,6 +1,4 @@
-//! Stage 7, stress: the material updates a chunk at once, the engine checks the answer and commits it.
-//!
-//! The work of the step goes into the strain energy, U += V ½ (σ0 + σ1) : Δε, unless the model gives its own energy.
+//! Stage 7, stress: the material updates a chunk at once, in scratch, and the engine checks the answer.
 
 use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP, LAHAR_POINT_UNRELIABLE};
 
@@ -8,7 +6,6 @@ use super::pass::{Moment, Piece};
 use super::time_step::Limits;
 use crate::error::{Error, Place, Status};
 use crate::material::{Capsule, Occasion, StressBatch};
-use crate::simd::{Isa, Kernel, LANES, Vector};
 
 /// Why a step failed, and the call of the model at the point where it did, if there is one.
 #[derive(Debug)]
@@ -103,40 +100,43 @@ impl Outcome {
         self.failure.map_or(Ok(limits), Err)
     }
 
-    fn failed(failure: impl Into<Box<Failure>>) -> Self {
-        Self { failure: Some(failure.into()), ..Self::default() }
+    /// A failure.
+    pub fn failed(failure: Box<Failure>) -> Self {
+        Self { failure: Some(failure), ..Self::default() }
+    }
+
+    /// A success.
+    pub fn of(limits: Limits, answer: Answer) -> Self {
+        let Answer { wish, unreliable } = answer;
+        Self { limits, wish, unreliable, failure: None }
     }
 }
 
-/// Updates stress, state and energy of a chunk.
+/// What a material answered for a chunk, beside what stands in scratch.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    wish: Option<Wish>,
+    unreliable: Option<Unreliable>,
+}
+
+/// Lets the material answer for a chunk. Particles stay as they are.
 pub fn update_stress<const D: usize>(
     piece: &mut Piece<'_, '_>,
-    isa: Isa,
     moment: Moment,
-) -> Outcome {
+) -> Result<Answer, Box<Failure>> {
     let Moment { time, step, dt } = moment;
     let mut batch = StressBatch { dt, time, step, ..piece.scratch.batch() };
     if let Err(error) = piece.material.update(&mut batch) {
-        return Outcome::failed(error.at(Place { body: Some(piece.body), ..Place::default() }));
+        return Err(error.at(Place { body: Some(piece.body), ..Place::default() }).into());
     }
     if let Some(failure) = failed_point::<D>(piece, moment) {
-        return Outcome::failed(failure);
+        return Err(failure);
     }
-    let wish = match smallest_wish(piece) {
-        Ok(wish) => wish,
-        Err(k) => {
-            let text = "gave a factor on the time step that is not above 0";
-            return Outcome::failed(fault::<D>(piece, k, moment, Status::MaterialFailed, text));
-        }
-    };
-    let (speed, finite) = isa.dispatch(Commit::<D>(piece));
-    if !finite {
-        return Outcome::failed(not_finite::<D>(piece, moment));
-    }
-    let diffusivities = piece.scratch.diffusivity.iter().take(piece.chunk.len);
-    let diffusivity = diffusivities.fold(0.0, |m: f64, d| m.max(*d));
-    let limits = Limits { speed, diffusivity, ..Limits::default() };
-    Outcome { limits, wish, failure: None, unreliable: unreliable(piece) }
+    let wish = smallest_wish(piece).map_err(|k| {
+        let text = "gave a factor on the time step that is not above 0";
+        fault::<D>(piece, k, moment, Status::MaterialFailed, text)
+    })?;
+    Ok(Answer { wish, unreliable: unreliable(piece) })
 }
 
 fn failed_point<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Option<Box<Failure>> {
@@ -179,91 +179,8 @@ fn smallest_wish(piece: &Piece<'_, '_>) -> Result<Option<Wish>, usize> {
     Ok(place.map(|k| Wish { factor, body: piece.body, particle: id(k) }))
 }
 
-/// Writes energy, stress and state into the columns. Gives the largest c + |v|, and whether everything is finite and no wave speed
-/// negative.
-struct Commit<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>);
-
-impl<const D: usize> Kernel for Commit<'_, '_, '_, D> {
-    type Output = (f64, bool);
-    #[inline(always)]
-    fn run<V: Vector>(self) -> (f64, bool) {
-        let Self(Piece { chunk, scratch: s, .. }) = self;
-        let (layout, stride, n) = (chunk.layout, s.stride, chunk.len);
-        let zero = V::splat(0.0);
-        // zero times everything that must be finite
-        let (mut speed, mut nothing, mut negative) = (zero, zero, 0);
-        for k in (0..n).step_by(LANES) {
-            let end = n.min(k + LANES);
-            let (mut work, mut trace) = (zero, zero);
-            for c in 0..6 {
-                let at = c * stride + k..c * stride + end;
-                let stress = V::load(&s.stress1[at.clone()]);
-                stress.store(&mut chunk.column_mut(layout.stress + c)[k..end]);
-                let strain = V::load(&s.strain_increment[at.clone()]);
-                let twice = (V::load(&s.stress0[at]) + stress) * strain;
-                work = twice.mul_add(V::splat(if c < 3 { 0.5 } else { 1.0 }), work);
-                trace = if c < 3 { trace + strain } else { trace };
-                nothing = stress.mul_add(zero, nothing);
-            }
-            let volume = V::load(&chunk.column(layout.volume)[k..end]);
-            let energy = if s.energy.is_empty() {
-                let change = work * volume * (V::splat(1.0) - V::splat(0.5) * trace); // [STS-1]
-                V::load(&chunk.column(layout.strain_energy)[k..end]) + change
-            } else {
-                V::load(&s.energy[k..end]) * volume // [STS-2]
-            };
-            energy.store(&mut chunk.column_mut(layout.strain_energy)[k..end]);
-            let mut square = zero;
-            for d in 0..D {
-                let v = V::load(&chunk.column(layout.velocity + d)[k..end]);
-                square = v.mul_add(v, square);
-                nothing =
-                    V::load(&chunk.column(layout.position + d)[k..end]).mul_add(zero, nothing);
-            }
-            let c = V::load(&s.wave_speed[k..end]);
-            negative |= c.less_than(zero);
-            let total = c + square.sqrt();
-            speed = speed.max(total);
-            nothing = (total + volume + energy).mul_add(zero, nothing);
-            for c in layout.strain_energy + 1..layout.state {
-                nothing = V::load(&chunk.column(c)[k..end]).mul_add(zero, nothing);
-            }
-            for c in 0..layout.state_components() {
-                let state = V::load(&s.state1[c * stride + k..c * stride + end]);
-                state.store(&mut chunk.column_mut(layout.state + c)[k..end]);
-                nothing = state.mul_add(zero, nothing);
-            }
-            for output in [&*s.diffusivity, &*s.dt_factor] {
-                if !output.is_empty() {
-                    nothing = V::load(&output[k..end]).mul_add(zero, nothing);
-                }
-            }
-        }
-        (speed.largest(), negative == 0 && nothing.sum().is_finite())
-    }
-}
-
-fn not_finite<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Box<Failure> {
-    let (chunk, s) = (&piece.chunk, &piece.scratch);
-    let given = |output: &[f64], k: usize| output.get(k).is_none_or(|value| value.is_finite());
-    let good = |k: &usize| {
-        (0..chunk.layout.components()).all(|c| chunk.column(c)[*k].is_finite())
-            && s.wave_speed[*k] >= 0.0
-            && s.wave_speed[*k].is_finite()
-            && given(s.diffusivity, *k)
-            && given(s.dt_factor, *k)
-    };
-    let k = (0..chunk.len).find(|k| !good(k));
-    fault::<D>(
-        piece,
-        k.unwrap_or(0),
-        moment,
-        Status::NonFinite,
-        "gave or took a value that is not finite, or gave a negative wave speed,",
-    )
-}
-
-fn fault<const D: usize>(
+/// The failure that a material does something wrong at point k.
+pub(super) fn fault<const D: usize>(
     piece: &Piece<'_, '_>,
     k: usize,
     Moment { time, step, dt }: Moment,

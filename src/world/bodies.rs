@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::background::space::FARTHEST;
 use crate::error::{Error, Place, Result, Status};
+use crate::material::Material;
 use crate::material::scratch::with_scratch;
-use crate::material::{Input, Material};
 use crate::memory::reserve;
+use crate::particles::inputs::{fill_density, fill_inputs};
 use crate::particles::seeding::{Fill, Region, fill};
-use crate::particles::{Body, CHUNK, Extras, Layout, Particles, Sizes};
-use crate::shape::ShapeKind;
+use crate::particles::{Body, CHUNK, Carrier, Layout, Particles, Rule, Sizes};
 use crate::step::options::Options;
 use crate::step::parts::Parts;
 use crate::tensor::Mat3;
@@ -41,14 +41,14 @@ impl<const D: usize> Parts<D> {
             )));
         }
         let sizes = sizes(arrays, n, D)?;
-        let extras = self.extras(material);
-        if extras.size && matches!(sizes, Sizes::Unknown) {
+        let layout = Layout::new(&self.carrier(material, false));
+        if layout.size.is_some() && matches!(sizes, Sizes::Unknown) {
             return Err(Error::invalid(
                 "GIMP shape functions need the sizes of particles: give `size`, the edge lengths of their domains [m]",
             ));
         }
         let h = self.method.options.spacing;
-        if let (true, Some(size)) = (extras.size, &arrays.size) {
+        if let (Some(_), Some(size)) = (layout.size, &arrays.size) {
             let most = |k: usize| (0..D).fold(0.0, |most, d| f64::max(most, size.get(d, k)));
             if let Some(k) = (0..n).find(|k| most(*k) > h * (1.0 + 1e-9)) {
                 return Err(Error::invalid(format!(
@@ -57,10 +57,9 @@ impl<const D: usize> Parts<D> {
                 )));
             }
         }
-        let mut particles = Particles::new(Layout::new(D, &extras), n)?;
-        let layout = particles.layout;
-        if let (true, Some(size)) = (extras.size, &arrays.size) {
-            copy(&mut particles, layout.size, size, "size", D)?;
+        let mut particles = Particles::new(layout, n)?;
+        if let (Some(columns), Some(size)) = (layout.size, &arrays.size) {
+            copy(&mut particles, columns.first, size, "size", D)?;
         }
         copy(&mut particles, layout.position, &arrays.position, "position", D)?;
         copy(&mut particles, layout.volume, &arrays.volume, "volume", 1)?;
@@ -78,9 +77,9 @@ impl<const D: usize> Parts<D> {
                 }
             }
         }
-        if extras.gradient {
+        if let Some(gradient) = layout.deformation_gradient {
             for c in [0, 4, 8] {
-                particles.column_mut(layout.deformation_gradient + c).fill(1.0);
+                particles.column_mut(gradient.first + c).fill(1.0);
             }
         }
         let material = material.clone();
@@ -141,21 +140,10 @@ impl<const D: usize> Parts<D> {
         )
     }
 
-    /// What bodies of this world and a material carry.
-    fn extras(&self, material: &Material) -> Extras {
+    /// What decides which fields a body of this world and a material carries.
+    fn carrier<'a>(&self, material: &'a Material, f_bar: bool) -> Carrier<'a> {
         let Options { shape, transfer, body_force, .. } = self.method.options;
-        let gradient = material.model().kinematics.carries_deformation_gradient();
-        Extras {
-            temperature: material.model().input(Input::Temperature).is_some(),
-            pore_pressure: material.model().input(Input::PorePressure).is_some(),
-            dilation: false,
-            size: shape.is_sized(),
-            body_force,
-            affine: transfer.is_affine(),
-            filtered: transfer.is_filtered(),
-            gradient: gradient || shape == ShapeKind::ContiguousGimp,
-            state: material.model().state_components(),
-        }
+        Carrier { dimension: D, shape, transfer, body_force, f_bar, model: material.model() }
     }
 
     /// Switches F-bar on or off for a body.
@@ -165,10 +153,8 @@ impl<const D: usize> Parts<D> {
         if body.has_f_bar() == on {
             return Ok(());
         }
-        let (old, extras) = (body.particles.layout, self.extras(&body.material));
-        let new = Layout::new(D, &Extras { dilation: on, ..extras });
-        let before = (0..old.dilation).zip(0..);
-        let pairs: Vec<_> = before.chain((old.size..old.components()).zip(new.size..)).collect();
+        let new = Layout::new(&self.carrier(&body.material, on));
+        let pairs = body.particles.layout.shared_with(&new, D);
         let particles = body.particles.with_layout(new, &pairs)?;
         self.bodies[at].particles = particles;
         Ok(())
@@ -176,8 +162,8 @@ impl<const D: usize> Parts<D> {
 
     fn insert(&mut self, mut body: Body) -> Result<()> {
         let layout = body.particles.layout;
-        if body.material.model().input(Input::Temperature).is_some() {
-            body.particles.column_mut(layout.temperature).fill(ROOM_TEMPERATURE);
+        if let Some(temperature) = layout.temperature {
+            body.particles.column_mut(temperature.first).fill(ROOM_TEMPERATURE);
         }
         self.check_particles(&body)?;
         init_state(&mut body, self.method.options.spacing)?;
@@ -202,13 +188,11 @@ impl<const D: usize> Parts<D> {
             ..self.clock.place()
         };
         for c in 0..layout.components() {
-            let positive = c == layout.mass
-                || c == layout.volume
-                || (layout.size..layout.body_force).contains(&c);
+            let (rule, name) = layout.rule_of(D, c);
+            let positive = rule == Rule::Positive;
             let good = |v: &f64| v.is_finite() && (!positive || *v > 0.0);
             if let Some(k) = particles.column(c).iter().position(|v| !good(v)) {
-                let name = field_of_column(&layout, D, c);
-                let rule = if positive { "positive and finite" } else { "finite" };
+                let (name, rule) = (name.to_string_lossy(), rule.text());
                 let text = format!(
                     "{name} of particle {} must be {rule}, got {}",
                     particles.id[k],
@@ -237,8 +221,8 @@ impl<const D: usize> Parts<D> {
                 return Err(Error::invalid(text).at(place(k)));
             }
             let far = !(0..D).all(near);
-            if layout.state > layout.deformation_gradient {
-                let f = particles.get::<9>(layout.deformation_gradient, k);
+            if let Some(gradient) = layout.deformation_gradient {
+                let f = particles.get::<9>(gradient.first, k);
                 let det = Mat3::from_row_slice(&f).determinant();
                 if !(det > 0.0) {
                     let text = format!(
@@ -327,7 +311,7 @@ fn sizes(arrays: &ParticleArrays<'_>, n: usize, dimension: usize) -> Result<Size
 pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
     let Body { material, particles, .. } = body;
     let layout = particles.layout;
-    let mut first = layout.state;
+    let mut first = layout.state.first;
     for state in &material.model().states {
         for _ in 0..state.kind.components() {
             particles.column_mut(first).fill(state.initial);
@@ -338,14 +322,14 @@ pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
         let n = CHUNK.min(particles.len() - start);
         with_scratch(material, n, |s| {
             let column = |c: usize| &particles.column(c)[start..start + n];
-            s.fill_density(&layout, column);
-            s.fill_inputs(&layout, column, &particles.id[start..start + n], spacing);
+            fill_density(s, &layout, column);
+            fill_inputs(s, &layout, column, &particles.id[start..start + n], spacing);
             for k in 0..n {
                 for c in 0..6 {
                     s.stress0[c * s.stride + k] = particles.column(layout.stress + c)[start + k];
                 }
-                for c in 0..layout.state_components() {
-                    let value = particles.column(layout.state + c)[start + k];
+                for c in 0..layout.state.count {
+                    let value = particles.column(layout.state.first + c)[start + k];
                     s.state0[c * s.stride + k] = value;
                     s.state1[c * s.stride + k] = value;
                 }
@@ -354,23 +338,12 @@ pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
                 Status::MaterialFailed => Error { status: Status::MaterialRefused, ..error },
                 _ => error,
             })?;
-            for c in 0..layout.state_components() {
-                particles.column_mut(layout.state + c)[start..start + n]
+            for c in 0..layout.state.count {
+                particles.column_mut(layout.state.first + c)[start..start + n]
                     .copy_from_slice(&s.state1[c * s.stride..][..n]);
             }
             Ok(())
         })?;
     }
     Ok(())
-}
-
-fn field_of_column(layout: &Layout, dimension: usize, column: usize) -> String {
-    let inside = |first: usize, components: usize| (first..first + components).contains(&column);
-    layout
-        .fields(dimension)
-        .iter()
-        .find(|(info, first)| inside(*first, info.components))
-        .map_or("a state variable".to_string(), |(info, _)| {
-            info.name.to_string_lossy().into_owned()
-        })
 }

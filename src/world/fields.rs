@@ -37,7 +37,7 @@ pub struct FieldSliceMut<'a> {
 fn fields_of(body: &Body, dimension: usize) -> Vec<(FieldInfo, usize)> {
     let layout = &body.particles.layout;
     let mut list = layout.fields(dimension);
-    let mut first = layout.state;
+    let mut first = layout.state.first;
     for state in &body.material.model().states {
         let info = FieldInfo {
             name: state.key_c,

@@ -88,15 +88,14 @@ impl<const D: usize> Parts<D> {
     fn affine_spin(&self, body: &Body, k: usize) -> [f64; 3] {
         let (p, layout) = (&body.particles, body.particles.layout);
         let mut spin = [0.0; 3];
-        if !self.method.options.transfer.is_affine() {
+        let Some(affine) = layout.affine else {
             return spin;
-        }
+        };
         let h2 = self.method.options.spacing.powi(2);
-        let sized = layout.body_force > layout.size;
-        let size = if sized { p.get::<D>(layout.size, k) } else { [0.0; D] };
+        let size = layout.size.map_or([0.0; D], |size| p.get::<D>(size.first, k));
         let at = at_point(&self.background.space, p.get::<D>(layout.position, k), size);
         let moment = at.map(|at| h2 * (self.method.kernels.moment)(at));
-        let c = |a: usize, b: usize| p.column(layout.affine + a * D + b)[k] * moment[b];
+        let c = |a: usize, b: usize| p.column(affine.first + a * D + b)[k] * moment[b];
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             if a < D && b < D {
                 spin[axis] = c(b, a) - c(a, b); // [TRF-9]

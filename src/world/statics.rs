@@ -307,7 +307,7 @@ impl<const D: usize> Parts<D> {
     /// Sets the stresses, if told, and lets the model derive its state from them; on error the old ones stay.
     fn start_anew(&mut self, at: usize, ground: Option<&Ground>) -> Result<()> {
         let layout = self.bodies[at].particles.layout;
-        let ranges = [(layout.stress, 6), (layout.state, layout.state_components())];
+        let ranges = [(layout.stress, 6), (layout.state.first, layout.state.count)];
         let old = ranges.map(|(c, n)| self.bodies[at].particles.columns(c, n).to_vec());
         if let Some(ground) = ground {
             self.set_ground_stress(at, ground);
