@@ -8,13 +8,15 @@
 //! # Map
 //!
 //! * [`step`] is the method, one file a stage; [`step::naive`] the same as the textbook writes it.
-//! * [`particles`], [`background`]: the data. [`shape`], [`transfer`], [`boundary`]: the choices.
+//! * [`particles`], [`background`]: the data. [`shape`], [`transfer`], [`boundary`]: the methods to
+//!   choose from, each choice a list ([`choice`]).
 //! * [`material`]: what the engine knows of a constitutive model; `plugin` loads them.
 //! * [`world`] owns everything; [`context`] owns threads, log and plugins; `ffi` is the C ABI, documented in `lahar.h`.
 #![deny(missing_docs)]
 
 pub mod background;
 pub mod boundary;
+pub mod choice;
 pub mod context;
 pub mod error;
 mod ffi;

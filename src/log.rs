@@ -3,23 +3,25 @@
 //! Each thread that works for a context points at the context's queue, so that a plugin, which knows no context, can
 //! log: workers for all their life, callers inside a [`LogScope`].
 
+use crate::choice::choices;
 use std::cell::RefCell;
 use std::mem;
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How important a line of the log is; the numbers are those of `lahar.h`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(i32)]
-pub enum LogLevel {
-    /// Something went wrong.
-    Error = 0,
-    /// Something is probably not what the user wants.
-    Warning = 1,
-    /// What happens.
-    Information = 2,
-    /// What happens inside.
-    Detail = 3,
+choices! {
+    /// How important a line of the log is.
+    #[derive(PartialOrd, Ord)]
+    pub enum LogLevel: "log level" {
+        /// Log level: something failed.
+        Error = 0, "error", LAHAR_LOG_ERROR;
+        /// Log level: something is unusual, such as a parameter outside its advised bounds.
+        Warning = 1, "warning", LAHAR_LOG_WARNING;
+        /// Log level: milestones, such as a loaded plugin.
+        Information = 2, "information", LAHAR_LOG_INFORMATION;
+        /// Log level: details for finding a fault.
+        Detail = 3, "detail", LAHAR_LOG_DETAIL;
+    }
 }
 
 /// Who gets the lines: called with the level and the text.

@@ -572,31 +572,36 @@ lahar_status lahar_material_value(const lahar_material *material,
 // Shape functions: cubic B-splines.
 #define LAHAR_SHAPE_CUBIC_BSPLINE 2
 
-// Shape functions: uniform GIMP, linear functions averaged over the particle's domain, which keeps its size. Bodies from arrays must
-// give the sizes of their particles.
+// Shape functions: uniform GIMP, linear functions averaged over the particle's domain,
+// which keeps its size. Bodies from arrays must give the sizes of their particles.
 #define LAHAR_SHAPE_UNIFORM_GIMP 3
 
-// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of the particle (F = R U), at most to the
-// spacing.
+// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of
+// the particle (F = R U), at most to the spacing.
 #define LAHAR_SHAPE_CONTIGUOUS_GIMP 4
 
-// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it (default).
+// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it
+// (default).
 #define LAHAR_WALLS_PLAIN 0
 
-// Next to walls shape functions are modified: linear fields are reproduced up to the wall, where the node on it alone counts. Walls must
-// stand on node planes, at most one on each side of an axis, and particles between them.
+// Next to walls shape functions are modified: linear fields are reproduced up to the wall,
+// where the node on it alone counts. Walls must stand on node planes, at most one on each
+// side of an axis, and particles between them.
 #define LAHAR_WALLS_MODIFIED 1
 
 // Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
 #define LAHAR_TRANSFER_PIC_FLIP 0
 
-// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
+// Transfer between particles and grid: affine (APIC), which keeps angular momentum
+// (default).
 #define LAHAR_TRANSFER_APIC 1
 
-// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient; any shape function.
+// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient;
+// any shape function.
 #define LAHAR_TRANSFER_TPIC 2
 
-// Transfer between particles and grid: APIC with the forces and gradients of moving least squares (MLS-MPM); B-splines.
+// Transfer between particles and grid: APIC with the forces and gradients of moving least
+// squares (MLS-MPM); B-splines.
 #define LAHAR_TRANSFER_MLS 3
 
 // Transfer between particles and grid: extended (XPIC) of order `filter_order`.
@@ -605,20 +610,24 @@ lahar_status lahar_material_value(const lahar_material *material,
 // Transfer between particles and grid: full-mass-matrix (FMPM) of order `filter_order`.
 #define LAHAR_TRANSFER_FMPM 5
 
-// Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
-// from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
-// touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
-// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such trouble.
+// Order of a step: update stress last. The particles get their new velocities, then
+// velocity gradients and stresses come from the grid as it moved. With linear shapes, this
+// order and APIC are prone to blow up when a stressed particle barely touches a cell: the
+// nodes there are so light that force over mass grows as 1/w with the small weight w.
+// Linear shapes want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such
+// trouble.
 #define LAHAR_ORDER_USL 0
 
-// Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
-// second time, with the same weights, and velocity gradients and stresses come from those.
+// Order of a step: modified update stress last (default). The new velocities of the
+// particles are mapped to the grid a second time, with the same weights, and velocity
+// gradients and stresses come from those.
 #define LAHAR_ORDER_MUSL 1
 
 // Order of a step: update stress first, from the velocities at the start of the step.
 #define LAHAR_ORDER_USF 2
 
-// Order of a step: half of the stress update first, half last; keeps energy best, for twice the calls of the material.
+// Order of a step: half of the stress update first, half last; keeps energy best, for
+// twice the calls of the material.
 #define LAHAR_ORDER_USAVG 3
 
 // Grid: blocks come and go with the particles (default).

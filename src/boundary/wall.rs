@@ -9,37 +9,23 @@ use std::ops::Range;
 
 use super::{Condition, law};
 use crate::background::{EDGE, Key, Space, block_nodes};
+use crate::choice::choices;
 use crate::error::{Error, Result};
 
 /// Nodes this close to the reach of a condition, in cells, still count as reached: the round-off of positions.
 pub const ROUND_OFF: f64 = 1e-9;
 
-/// What a wall does to a node's velocity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum WallKind {
-    /// The material sticks: v = 0.
-    Sticky = 0,
-    /// The material slides without friction and cannot leave: v·n = 0.
-    Slip = 1,
-    /// The material slides without friction and may leave: v·n ≥ 0.
-    Separating = 2,
-    /// As separating, with Coulomb friction: the tangential velocity changes by at most μ times the normal one.
-    Friction = 3,
-}
-
-impl WallKind {
-    /// The kind with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        match value {
-            0 => Ok(Self::Sticky),
-            1 => Ok(Self::Slip),
-            2 => Ok(Self::Separating),
-            3 => Ok(Self::Friction),
-            _ => Err(Error::invalid(format!(
-                "a wall's kind must be 0 (sticky), 1 (slip), 2 (separating) or 3 (friction), got {value}"
-            ))),
-        }
+choices! {
+    /// What a wall does to the velocity of a node.
+    pub enum WallKind: "kind of wall" {
+        /// Wall: nothing moves at it.
+        Sticky = 0, "sticky", LAHAR_WALL_STICKY;
+        /// Wall: no motion across it, free motion along it.
+        Slip = 1, "slip", LAHAR_WALL_SLIP;
+        /// Wall: as slip, but material may leave it.
+        Separating = 2, "separating", LAHAR_WALL_SEPARATING;
+        /// Wall: as separating, with Coulomb friction.
+        Friction = 3, "friction", LAHAR_WALL_FRICTION;
     }
 }
 

@@ -7,7 +7,7 @@ use super::cells::ContextCell;
 use super::entry::{call_host, entry, quiet_entry};
 use super::status::lahar_status;
 use crate::context::{Context, LogLevel, LogSink};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::plugin::StaticEntry;
 use lahar_plugin_abi::{lahar_host_api, lahar_plugin_desc};
 use std::ffi::{CStr, c_char, c_void};
@@ -19,23 +19,6 @@ use std::sync::Arc;
 pub struct lahar_context {
     pub(super) cell: Arc<ContextCell>,
 }
-
-/// Log level: something failed.
-pub const LAHAR_LOG_ERROR: i32 = 0;
-/// Log level: something is unusual, such as a parameter outside its advised bounds.
-pub const LAHAR_LOG_WARNING: i32 = 1;
-/// Log level: milestones, such as a loaded plugin.
-pub const LAHAR_LOG_INFORMATION: i32 = 2;
-/// Log level: details for finding a fault.
-pub const LAHAR_LOG_DETAIL: i32 = 3;
-
-// The numbers are the engine's.
-const _: () = {
-    assert!(LAHAR_LOG_ERROR == LogLevel::Error as i32);
-    assert!(LAHAR_LOG_WARNING == LogLevel::Warning as i32);
-    assert!(LAHAR_LOG_INFORMATION == LogLevel::Information as i32);
-    assert!(LAHAR_LOG_DETAIL == LogLevel::Detail as i32);
-};
 
 /// Receives a line of the log: a LAHAR_LOG_ level, a text in UTF-8 without a newline that is valid during the call, and
 /// the pointer given to lahar_context_set_log. Called on the thread that called lahar, in the host's floating-point
@@ -199,11 +182,7 @@ pub unsafe extern "C" fn lahar_context_set_log(
     entry("lahar_context_set_log", |scope| {
         // SAFETY: the host passes NULL or a live handle.
         let cell = unsafe { scope.context(context) }?;
-        if !(LAHAR_LOG_ERROR..=LAHAR_LOG_DETAIL).contains(&max_level) {
-            return Err(Error::invalid(format!(
-                "`max_level` is {max_level}; expected 0 to 3 (LAHAR_LOG_*)"
-            )));
-        }
+        LogLevel::from_i32(max_level)?;
         cell.context.set_log(callback.map(|callback| sink(callback, User(user))), max_level);
         Ok(())
     })

@@ -8,23 +8,6 @@ use super::world::lahar_world;
 use crate::boundary::{Wall, WallKind};
 use crate::error::{Error, Result};
 
-/// Wall: nothing moves at it.
-pub const LAHAR_WALL_STICKY: i32 = 0;
-/// Wall: no motion across it, free motion along it.
-pub const LAHAR_WALL_SLIP: i32 = 1;
-/// Wall: as slip, but material may leave it.
-pub const LAHAR_WALL_SEPARATING: i32 = 2;
-/// Wall: as separating, with Coulomb friction.
-pub const LAHAR_WALL_FRICTION: i32 = 3;
-
-// The numbers are the engine's.
-const _: () = {
-    assert!(LAHAR_WALL_STICKY == WallKind::Sticky as i32);
-    assert!(LAHAR_WALL_SLIP == WallKind::Slip as i32);
-    assert!(LAHAR_WALL_SEPARATING == WallKind::Separating as i32);
-    assert!(LAHAR_WALL_FRICTION == WallKind::Friction as i32);
-};
-
 /// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
 ///
 /// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`:
@@ -67,7 +50,7 @@ pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> la
             struct_size: 0,
             axis: 0,
             side: 1,
-            kind: LAHAR_WALL_STICKY,
+            kind: WallKind::Sticky.number(),
             position: 0.0,
             friction: 0.0,
         };

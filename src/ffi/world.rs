@@ -22,78 +22,6 @@ pub struct lahar_world {
     pub(super) cell: Arc<WorldCell>,
 }
 
-/// Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
-pub const LAHAR_SHAPE_LINEAR: i32 = 0;
-/// Shape functions: quadratic B-splines (default).
-pub const LAHAR_SHAPE_QUADRATIC_BSPLINE: i32 = 1;
-/// Shape functions: cubic B-splines.
-pub const LAHAR_SHAPE_CUBIC_BSPLINE: i32 = 2;
-/// Shape functions: uniform GIMP, linear functions averaged over the particle's domain, which keeps its size. Bodies from arrays must
-/// give the sizes of their particles.
-pub const LAHAR_SHAPE_UNIFORM_GIMP: i32 = 3;
-/// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of the particle (F = R U), at most to the
-/// spacing.
-pub const LAHAR_SHAPE_CONTIGUOUS_GIMP: i32 = 4;
-/// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it (default).
-pub const LAHAR_WALLS_PLAIN: i32 = 0;
-/// Next to walls shape functions are modified: linear fields are reproduced up to the wall, where the node on it alone counts. Walls must
-/// stand on node planes, at most one on each side of an axis, and particles between them.
-pub const LAHAR_WALLS_MODIFIED: i32 = 1;
-/// Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
-pub const LAHAR_TRANSFER_PIC_FLIP: i32 = 0;
-/// Transfer between particles and grid: affine (APIC), which keeps angular momentum (default).
-pub const LAHAR_TRANSFER_APIC: i32 = 1;
-/// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient; any shape function.
-pub const LAHAR_TRANSFER_TPIC: i32 = 2;
-/// Transfer between particles and grid: APIC with the forces and gradients of moving least squares (MLS-MPM); B-splines.
-pub const LAHAR_TRANSFER_MLS: i32 = 3;
-/// Transfer between particles and grid: extended (XPIC) of order `filter_order`.
-pub const LAHAR_TRANSFER_XPIC: i32 = 4;
-/// Transfer between particles and grid: full-mass-matrix (FMPM) of order `filter_order`.
-pub const LAHAR_TRANSFER_FMPM: i32 = 5;
-/// Order of a step: update stress last. The particles get their new velocities, then velocity gradients and stresses come
-/// from the grid as it moved. With linear shapes, this order and APIC are prone to blow up when a stressed particle barely
-/// touches a cell: the nodes there are so light that force over mass grows as 1/w with the small weight w. Linear shapes
-/// want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such trouble.
-pub const LAHAR_ORDER_USL: i32 = 0;
-/// Order of a step: modified update stress last (default). The new velocities of the particles are mapped to the grid a
-/// second time, with the same weights, and velocity gradients and stresses come from those.
-pub const LAHAR_ORDER_MUSL: i32 = 1;
-/// Order of a step: update stress first, from the velocities at the start of the step.
-pub const LAHAR_ORDER_USF: i32 = 2;
-/// Order of a step: half of the stress update first, half last; keeps energy best, for twice the calls of the material.
-pub const LAHAR_ORDER_USAVG: i32 = 3;
-/// Grid: blocks come and go with the particles (default).
-pub const LAHAR_GRID_DYNAMIC: i32 = 0;
-/// Grid: blocks come with the particles and stay.
-pub const LAHAR_GRID_GROW_ONLY: i32 = 1;
-/// Grid: the blocks of a fixed box; a particle that leaves it is an error.
-pub const LAHAR_GRID_STATIC: i32 = 2;
-
-// The numbers are the engine's.
-const _: () = {
-    assert!(LAHAR_SHAPE_LINEAR == ShapeKind::Linear as i32);
-    assert!(LAHAR_SHAPE_QUADRATIC_BSPLINE == ShapeKind::QuadraticBspline as i32);
-    assert!(LAHAR_SHAPE_CUBIC_BSPLINE == ShapeKind::CubicBspline as i32);
-    assert!(LAHAR_SHAPE_UNIFORM_GIMP == ShapeKind::UniformGimp as i32);
-    assert!(LAHAR_SHAPE_CONTIGUOUS_GIMP == ShapeKind::ContiguousGimp as i32);
-    assert!(LAHAR_WALLS_PLAIN == WallTreatment::Plain as i32);
-    assert!(LAHAR_WALLS_MODIFIED == WallTreatment::Modified as i32);
-    assert!(LAHAR_TRANSFER_PIC_FLIP == TransferKind::PicFlip as i32);
-    assert!(LAHAR_TRANSFER_APIC == TransferKind::Apic as i32);
-    assert!(LAHAR_TRANSFER_TPIC == TransferKind::Tpic as i32);
-    assert!(LAHAR_TRANSFER_MLS == TransferKind::Mls as i32);
-    assert!(LAHAR_TRANSFER_XPIC == TransferKind::Xpic as i32);
-    assert!(LAHAR_TRANSFER_FMPM == TransferKind::Fmpm as i32);
-    assert!(LAHAR_ORDER_USL == StepOrder::Usl as i32);
-    assert!(LAHAR_ORDER_MUSL == StepOrder::Musl as i32);
-    assert!(LAHAR_ORDER_USF == StepOrder::Usf as i32);
-    assert!(LAHAR_ORDER_USAVG == StepOrder::Usavg as i32);
-    assert!(LAHAR_GRID_DYNAMIC == GridPolicy::Dynamic as i32);
-    assert!(LAHAR_GRID_GROW_ONLY == GridPolicy::GrowOnly as i32);
-    assert!(LAHAR_GRID_STATIC == GridPolicy::Static as i32);
-};
-
 /// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what else is wanted.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -171,10 +99,10 @@ fn from_options(options: &Options) -> lahar_world_options {
     lahar_world_options {
         struct_size: 0,
         dimension: options.dimension as i32,
-        shape: options.shape as i32,
-        transfer: options.transfer as i32,
-        order: options.order as i32,
-        grid_policy: options.grid_policy as i32,
+        shape: options.shape.number(),
+        transfer: options.transfer.number(),
+        order: options.order.number(),
+        grid_policy: options.grid_policy.number(),
         spacing: options.spacing,
         origin: options.origin,
         pic_rate: options.pic_rate,
@@ -183,7 +111,7 @@ fn from_options(options: &Options) -> lahar_world_options {
         damping: options.damping,
         box_min: options.box_min,
         box_max: options.box_max,
-        wall_treatment: options.wall_treatment as i32,
+        wall_treatment: options.wall_treatment.number(),
         axisymmetric: i32::from(options.axisymmetric),
         filter_order: options.filter_order,
         body_force: i32::from(options.body_force),

@@ -14,56 +14,44 @@ mod tests;
 pub mod textbook;
 pub mod weights;
 
-use crate::error::{Error, Result};
+use crate::choice::choices;
 use stencil::ShapeFunction;
 
-/// The shape functions that a world can use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum ShapeKind {
-    /// Piecewise linear: 2 nodes an axis.
-    Linear = 0,
-    /// Quadratic B-spline: 3 nodes an axis.
-    QuadraticBspline = 1,
-    /// Cubic B-spline: 4 nodes an axis.
-    CubicBspline = 2,
-    /// Uniform GIMP: linear, averaged over a particle of constant size; 3 nodes an axis.
-    UniformGimp = 3,
-    /// Contiguous-particle GIMP: the size follows the stretch of the particle.
-    ContiguousGimp = 4,
+choices! {
+    /// The shape functions that a world can use: [`linear`], [`quadratic_bspline`],
+    /// [`cubic_bspline`], [`gimp`].
+    pub enum ShapeKind: "shape" {
+        /// Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
+        Linear = 0, "linear", LAHAR_SHAPE_LINEAR;
+        /// Shape functions: quadratic B-splines (default).
+        QuadraticBspline = 1, "quadratic_bspline", LAHAR_SHAPE_QUADRATIC_BSPLINE,
+            "quadratic B-spline";
+        /// Shape functions: cubic B-splines.
+        CubicBspline = 2, "cubic_bspline", LAHAR_SHAPE_CUBIC_BSPLINE, "cubic B-spline";
+        /// Shape functions: uniform GIMP, linear functions averaged over the particle's domain,
+        /// which keeps its size. Bodies from arrays must give the sizes of their particles.
+        UniformGimp = 3, "uniform_gimp", LAHAR_SHAPE_UNIFORM_GIMP, "uniform GIMP";
+        /// Shape functions: contiguous-particle GIMP. The domain's edges follow the stretch U of
+        /// the particle (F = R U), at most to the spacing.
+        ContiguousGimp = 4, "contiguous_gimp", LAHAR_SHAPE_CONTIGUOUS_GIMP,
+            "contiguous-particle GIMP";
+    }
+}
+
+choices! {
+    /// What shape functions do next to walls, see [`modified`].
+    pub enum WallTreatment: "wall_treatment" {
+        /// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it
+        /// (default).
+        Plain = 0, "plain", LAHAR_WALLS_PLAIN;
+        /// Next to walls shape functions are modified: linear fields are reproduced up to the wall,
+        /// where the node on it alone counts. Walls must stand on node planes, at most one on each
+        /// side of an axis, and particles between them.
+        Modified = 1, "modified", LAHAR_WALLS_MODIFIED, "modified shape functions";
+    }
 }
 
 impl ShapeKind {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Linear,
-        Self::QuadraticBspline,
-        Self::CubicBspline,
-        Self::UniformGimp,
-        Self::ContiguousGimp,
-    ];
-
-    /// The kind with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as i32 == value).ok_or_else(|| {
-            Error::invalid(format!(
-                "shape must be 0 (linear), 1 (quadratic B-spline), 2 (cubic B-spline), 3 (uniform GIMP) or 4 \
-                 (contiguous-particle GIMP), got {value}"
-            ))
-        })
-    }
-
-    /// Its name in messages.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::QuadraticBspline => "quadratic B-spline",
-            Self::CubicBspline => "cubic B-spline",
-            Self::UniformGimp => "uniform GIMP",
-            Self::ContiguousGimp => "contiguous-particle GIMP",
-        }
-    }
-
     /// Nodes of a stencil along one axis.
     pub const fn nodes(self) -> usize {
         match self {
@@ -92,28 +80,5 @@ impl ShapeKind {
     /// node plane gives nothing to the nodes behind.)
     pub const fn wall_reach(self) -> f64 {
         if self.is_sized() { 0.0 } else { 0.5 * self.nodes() as f64 - 1.0 }
-    }
-}
-
-/// What shape functions do next to walls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum WallTreatment {
-    /// Nothing: all nodes in reach of a wall feel it.
-    Plain = 0,
-    /// Functions of nodes behind a wall are given to those in front, see [`modified`]; walls stand on node planes.
-    Modified = 1,
-}
-
-impl WallTreatment {
-    /// The treatment with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        match value {
-            0 => Ok(Self::Plain),
-            1 => Ok(Self::Modified),
-            _ => Err(Error::invalid(format!(
-                "wall_treatment must be 0 (plain) or 1 (modified shape functions), got {value}"
-            ))),
-        }
     }
 }

@@ -1,31 +1,25 @@
 //! The orders in which a step can go through its stages.
 
-use crate::error::{Error, Result};
+use crate::choice::choices;
 
-/// Where in a step the stress is updated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum StepOrder {
-    /// Update stress last.
-    Usl = 0,
-    /// Modified update stress last: the velocity gradient comes from particle velocities mapped a second time.
-    Musl = 1,
-    /// Update stress first.
-    Usf = 2,
-    /// Half of the stress update first, half last.
-    Usavg = 3,
-}
-
-impl StepOrder {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Usl, Self::Musl, Self::Usf, Self::Usavg];
-
-    /// The order with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        Self::ALL.into_iter().find(|order| *order as i32 == value).ok_or_else(|| {
-            Error::invalid(format!(
-                "order must be 0 (USL), 1 (MUSL), 2 (USF) or 3 (USAVG), got {value}"
-            ))
-        })
+choices! {
+    /// Where in a step the stress is updated.
+    pub enum StepOrder: "order" {
+        /// Order of a step: update stress last. The particles get their new velocities, then
+        /// velocity gradients and stresses come from the grid as it moved. With linear shapes, this
+        /// order and APIC are prone to blow up when a stressed particle barely touches a cell: the
+        /// nodes there are so light that force over mass grows as 1/w with the small weight w.
+        /// Linear shapes want FLIP (`pic_rate` 0) with LAHAR_ORDER_MUSL; B-splines have no such
+        /// trouble.
+        Usl = 0, "usl", LAHAR_ORDER_USL, "USL";
+        /// Order of a step: modified update stress last (default). The new velocities of the
+        /// particles are mapped to the grid a second time, with the same weights, and velocity
+        /// gradients and stresses come from those.
+        Musl = 1, "musl", LAHAR_ORDER_MUSL, "MUSL";
+        /// Order of a step: update stress first, from the velocities at the start of the step.
+        Usf = 2, "usf", LAHAR_ORDER_USF, "USF";
+        /// Order of a step: half of the stress update first, half last; keeps energy best, for
+        /// twice the calls of the material.
+        Usavg = 3, "usavg", LAHAR_ORDER_USAVG, "USAVG";
     }
 }

@@ -6,40 +6,31 @@ pub mod apic;
 pub mod filter;
 pub mod pic_flip;
 
-use crate::error::{Error, Result};
+use crate::choice::choices;
 
-/// The transfer schemes that a world can use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum TransferKind {
-    /// Blend of PIC and FLIP, see [`pic_flip`].
-    PicFlip = 0,
-    /// Affine particle-in-cell, see [`apic`].
-    Apic = 1,
-    /// Taylor particle-in-cell, see [`apic`].
-    Tpic = 2,
-    /// Affine particle-in-cell with the forces and gradients of moving least squares, see [`apic`].
-    Mls = 3,
-    /// Extended particle-in-cell, see [`filter`].
-    Xpic = 4,
-    /// Full-mass-matrix method, see [`filter`].
-    Fmpm = 5,
+choices! {
+    /// The transfer schemes that a world can use: [`pic_flip`], [`apic`] with its Taylor and moving
+    /// least squares variants, and those of [`filter`].
+    pub enum TransferKind: "transfer" {
+        /// Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
+        PicFlip = 0, "pic_flip", LAHAR_TRANSFER_PIC_FLIP, "PIC/FLIP";
+        /// Transfer between particles and grid: affine (APIC), which keeps angular momentum
+        /// (default).
+        Apic = 1, "apic", LAHAR_TRANSFER_APIC, "APIC";
+        /// Transfer between particles and grid: Taylor (TPIC), affine with the velocity gradient;
+        /// any shape function.
+        Tpic = 2, "tpic", LAHAR_TRANSFER_TPIC, "TPIC";
+        /// Transfer between particles and grid: APIC with the forces and gradients of moving least
+        /// squares (MLS-MPM); B-splines.
+        Mls = 3, "mls", LAHAR_TRANSFER_MLS, "MLS";
+        /// Transfer between particles and grid: extended (XPIC) of order `filter_order`.
+        Xpic = 4, "xpic", LAHAR_TRANSFER_XPIC, "XPIC";
+        /// Transfer between particles and grid: full-mass-matrix (FMPM) of order `filter_order`.
+        Fmpm = 5, "fmpm", LAHAR_TRANSFER_FMPM, "FMPM";
+    }
 }
 
 impl TransferKind {
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::PicFlip, Self::Apic, Self::Tpic, Self::Mls, Self::Xpic, Self::Fmpm];
-
-    /// The kind with this number.
-    pub fn from_i32(value: i32) -> Result<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as i32 == value).ok_or_else(|| {
-            Error::invalid(format!(
-                "transfer must be 0 (PIC/FLIP), 1 (APIC), 2 (TPIC), 3 (MLS), 4 (XPIC) or 5 (FMPM), got {value}"
-            ))
-        })
-    }
-
     /// Whether particles carry an affine matrix.
     pub const fn is_affine(self) -> bool {
         matches!(self, Self::Apic | Self::Tpic | Self::Mls)

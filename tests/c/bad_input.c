@@ -310,7 +310,7 @@ static void bad_choices_and_counts(void) {
   OK(lahar_wall_init(&wall, sizeof wall));
   wall.side = 0;
   REFUSED(world, lahar_wall_add(world, &wall, &id), LAHAR_ERROR_INVALID_ARGUMENT, "side must be 1");
-  EXPECT(lahar_context_set_log(context, lahar_log_stderr, NULL, 4), LAHAR_ERROR_INVALID_ARGUMENT, "`max_level` is 4");
+  EXPECT(lahar_context_set_log(context, lahar_log_stderr, NULL, 4), LAHAR_ERROR_INVALID_ARGUMENT, "log level must be 0 (error), 1 (warning), 2 (information) or 3 (detail), got 4");
   REFUSED(world, lahar_body_view(world, 0, "mass", 2, &view), LAHAR_ERROR_INVALID_ARGUMENT, "`access` is 2");
   REFUSED(world, lahar_body_remove(world, 99), LAHAR_ERROR_NOT_FOUND, "no body has the id 99");
   REFUSED(world, lahar_wall_remove(world, 99), LAHAR_ERROR_NOT_FOUND, "no wall has the id 99");

@@ -2,7 +2,14 @@
 
 use super::compiler::{WARNINGS, library_folder, program, read, run};
 use super::support::{repository, scratch_folder};
+use lahar::background::GridPolicy;
+use lahar::boundary::WallKind;
+use lahar::choice::List;
+use lahar::context::LogLevel;
 use lahar::error::Status;
+use lahar::shape::{ShapeKind, WallTreatment};
+use lahar::step::StepOrder;
+use lahar::transfer::TransferKind;
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::Command;
@@ -115,6 +122,41 @@ fn constant_of(status: Status) -> String {
         name.extend(letter.to_uppercase());
     }
     name
+}
+
+/// Choices and how the names of their constants begin.
+const CHOICES: [(&str, List); 7] = [
+    ("LAHAR_SHAPE_", ShapeKind::LIST),
+    ("LAHAR_WALLS_", WallTreatment::LIST),
+    ("LAHAR_TRANSFER_", TransferKind::LIST),
+    ("LAHAR_ORDER_", StepOrder::LIST),
+    ("LAHAR_GRID_", GridPolicy::LIST),
+    ("LAHAR_WALL_", WallKind::LIST),
+    ("LAHAR_LOG_", LogLevel::LIST),
+];
+
+#[test]
+fn the_constants_of_choices_are_those_of_their_lists_in_c_and_in_fortran() {
+    let header = read("include/lahar/lahar.h");
+    let module = read("include/lahar/lahar.f90");
+    let in_header = header.lines().filter_map(|l| l.strip_prefix("#define ")?.split_once(' '));
+    let in_module = module.lines().filter_map(|line| {
+        let (_, constant) = line.split_once(", parameter, public :: ")?;
+        constant.strip_suffix("_c_int32_t")?.split_once(" = ")
+    });
+    let (in_header, in_module): (Vec<_>, Vec<_>) = (in_header.collect(), in_module.collect());
+    for (start, choice) in CHOICES {
+        let numbers: Vec<String> = choice.values.iter().map(|v| v.number.to_string()).collect();
+        let list: Vec<(&str, &str)> =
+            choice.values.iter().zip(&numbers).map(|(v, n)| (v.constant, n.as_str())).collect();
+        for all in [&in_header, &in_module] {
+            let found = all.iter().filter(|(name, _)| name.starts_with(start));
+            assert_eq!(found.copied().collect::<Vec<_>>(), list);
+        }
+        for value in choice.values {
+            assert_eq!(value.constant, format!("{start}{}", value.key.to_uppercase()));
+        }
+    }
 }
 
 #[test]

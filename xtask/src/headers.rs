@@ -1,32 +1,45 @@
 //! The C headers, generated: `include/lahar/lahar.h` from `src/ffi`, `include/lahar/lahar_plugin.h` from `plugins/abi`.
 //!
 //! cbindgen translates one Rust file at a time, so that the header has the sections of `src/ffi`; the sizes and offsets
-//! that the headers assert come from `src/ffi/layout.rs`, where Rust asserts them too. The list of exported symbols,
+//! that the headers assert come from `src/ffi/layout.rs`, where Rust asserts them too. The
+//! constants of choices come from their lists, see [`lahar::choice`]. The list of exported symbols,
 //! `include/lahar/symbols.txt`, is made from the same sources.
 
+use lahar::background::GridPolicy;
+use lahar::boundary::WallKind;
+use lahar::choice::List;
+use lahar::context::LogLevel;
+use lahar::shape::{ShapeKind, WallTreatment};
+use lahar::step::StepOrder;
+use lahar::transfer::TransferKind;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Files of `src/ffi` in the order of the header: a type stands before its first use.
-const SECTIONS: [&str; 17] = [
-    "status",
-    "version",
-    "context",
-    "error",
-    "model",
-    "material",
-    "world",
-    "body",
-    "field",
-    "view",
-    "wall",
-    "table",
-    "prescribed_velocity",
-    "traction",
-    "statics",
-    "grid",
-    "output",
+/// Files of `src/ffi` in the order of the header, where a type stands before its first use, and the
+/// choices whose constants stand there.
+const SECTIONS: [(&str, &[List]); 17] = [
+    ("status", &[]),
+    ("version", &[]),
+    ("context", &[LogLevel::LIST]),
+    ("error", &[]),
+    ("model", &[]),
+    ("material", &[]),
+    ("world", &WORLD_CHOICES),
+    ("body", &[]),
+    ("field", &[]),
+    ("view", &[]),
+    ("wall", &[WallKind::LIST]),
+    ("table", &[]),
+    ("prescribed_velocity", &[]),
+    ("traction", &[]),
+    ("statics", &[]),
+    ("grid", &[]),
+    ("output", &[]),
 ];
+
+/// The choices among the options of a world.
+const WORLD_CHOICES: [List; 5] =
+    [ShapeKind::LIST, WallTreatment::LIST, TransferKind::LIST, StepOrder::LIST, GridPolicy::LIST];
 
 /// Writes the headers and the symbol list, or with `check` reports those that differ from the sources.
 pub fn run(check: bool) -> Result<(), String> {
@@ -75,9 +88,11 @@ fn host_header(root: &Path) -> Result<String, String> {
     let mut text = format!("{HOST_INTRODUCTION}{}{PLUGIN_TABLE}", opening("LAHAR_H"));
     // a type that no function of its section names
     let not_in_functions = ["lahar_table".to_string()];
-    for section in SECTIONS {
+    for (section, choices) in SECTIONS {
         let path = root.join(format!("src/ffi/{section}.rs"));
-        write_section(&mut text, section, &path, &not_in_functions)?;
+        write_banner(&mut text, section, &path)?;
+        choices.iter().for_each(|choice| write_constants(&mut text, choice));
+        write_items(&mut text, &path, &not_in_functions)?;
     }
     // Typedefs of lahar_plugin.h, which may be included after this header or not at all.
     for name in ["lahar_plugin_desc", "lahar_host_api"] {
@@ -98,7 +113,8 @@ fn plugin_header(root: &Path) -> Result<String, String> {
     };
     let types: Vec<String> = source.lines().filter_map(named).collect();
     let mut text = format!("{PLUGIN_INTRODUCTION}{}", opening("LAHAR_PLUGIN_H"));
-    write_section(&mut text, "plugin", &path, &types)?;
+    write_banner(&mut text, "plugin", &path)?;
+    write_items(&mut text, &path, &types)?;
     text += PLUGIN_ENTRY;
     let layout = read(&root.join("src/ffi/layout.rs"))?;
     // The table names itself before its typedef is complete.
@@ -108,13 +124,8 @@ fn plugin_header(root: &Path) -> Result<String, String> {
     Ok(text)
 }
 
-/// One file's items under a banner with its module documentation.
-fn write_section(
-    text: &mut String,
-    name: &str,
-    path: &Path,
-    types: &[String],
-) -> Result<(), String> {
+/// The banner of a section with the documentation of its module.
+fn write_banner(text: &mut String, name: &str, path: &Path) -> Result<(), String> {
     let source = read(path)?;
     let about = source.lines().map_while(|l| l.strip_prefix("//!")).map(|l| l.trim_end());
     let rule = "-".repeat(100usize.saturating_sub(name.len() + 10));
@@ -123,8 +134,23 @@ fn write_section(
         let _ = writeln!(text, " *{line}");
     }
     text.push_str(" */\n\n");
-    let generated = translate(path, types)?;
-    text.push_str(generated.trim());
+    Ok(())
+}
+
+/// A constant for each value of a choice.
+fn write_constants(text: &mut String, choice: &List) {
+    for value in choice.values {
+        for line in value.doc {
+            let _ = writeln!(text, "//{line}");
+        }
+        let _ = writeln!(text, "#define {} {}\n", value.constant, value.number);
+    }
+}
+
+/// The items of one file.
+fn write_items(text: &mut String, path: &Path, types: &[String]) -> Result<(), String> {
+    let items = translate(path, types)?;
+    text.push_str(items.trim());
     text.push('\n');
     Ok(())
 }
@@ -212,7 +238,7 @@ fn closing(guard: &str) -> String {
 /// The names of all `extern "C"` functions of `src/ffi`, sorted, one a line.
 fn symbols(root: &Path) -> Result<String, String> {
     let mut names = Vec::new();
-    for section in SECTIONS {
+    for (section, _) in SECTIONS {
         let source = read(&root.join(format!("src/ffi/{section}.rs")))?;
         for part in source.split("extern \"C\" fn lahar_").skip(1) {
             let end = part.find('(').unwrap_or(0);
