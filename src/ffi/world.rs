@@ -12,7 +12,7 @@ use crate::background::GridPolicy;
 use crate::error::{Error, Result};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::step::StepOrder;
-use crate::step::options::Options;
+use crate::step::options::{Options, wrong_dimension};
 use crate::transfer::TransferKind;
 use crate::world::World;
 use std::sync::Arc;
@@ -125,32 +125,24 @@ fn to_options(options: &lahar_world_options) -> Result<Options> {
         let text = format!("`reserved` of the options is {}; expected 0", options.reserved);
         return Err(Error::invalid(text));
     }
-    let dimension = match options.dimension {
-        2 => 2,
-        3 => 3,
-        other => return Err(Error::invalid(format!("`dimension` is {other}; expected 2 or 3"))),
-    };
-    let vector = |mut v: [f64; 3]| {
-        v[dimension..].fill(0.0);
-        v
-    };
+    let dimension = options.dimension;
     Ok(Options {
-        dimension,
+        dimension: usize::try_from(dimension).map_err(|_| wrong_dimension(dimension))?,
         spacing: options.spacing,
-        origin: vector(options.origin),
+        origin: options.origin,
         shape: ShapeKind::from_i32(options.shape)?,
         transfer: TransferKind::from_i32(options.transfer)?,
         pic_rate: options.pic_rate,
         order: StepOrder::from_i32(options.order)?,
         cfl: options.cfl,
-        gravity: vector(options.gravity),
+        gravity: options.gravity,
         damping: options.damping,
         grid_policy: GridPolicy::from_i32(options.grid_policy)?,
-        box_min: vector(options.box_min),
-        box_max: vector(options.box_max),
+        box_min: options.box_min,
+        box_max: options.box_max,
         wall_treatment: WallTreatment::from_i32(options.wall_treatment)?,
         axisymmetric: flag(options.axisymmetric, "axisymmetric")?,
-        filter_order: if options.filter_order == 0 { 2 } else { options.filter_order },
+        filter_order: options.filter_order,
         body_force: flag(options.body_force, "body_force")?,
         retries: options.retries,
     })
@@ -215,7 +207,7 @@ pub unsafe extern "C" fn lahar_world_set_gravity(
     entry("lahar_world_set_gravity", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or three doubles.
         let (cell, gravity) = unsafe { (scope.world(world)?, array3(gravity, "gravity")?) };
-        cell.change(Change::Values, |w| w.set_gravity(cell.vector(gravity)))
+        cell.change(Change::Values, |w| w.set_gravity(gravity))
     })
 }
 

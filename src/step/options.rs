@@ -3,18 +3,22 @@
 use super::order::StepOrder;
 use crate::background::space::FARTHEST;
 use crate::background::{GridPolicy, Space};
+use crate::boundary::Table;
 use crate::error::{Error, Result, Status};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::transfer::{TransferKind, filter};
+use std::fmt::Display;
 
-/// Options of a world.
+/// Options of a world, as a host gives them; [`Options::normalised`] makes of them what the engine
+/// uses.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Number of axes: 2 (plane strain, 1 m thick) or 3.
     pub dimension: usize,
     /// Distance h of grid nodes [m]; must be given.
     pub spacing: f64,
-    /// Position of grid node 0 [m].
+    /// Position of grid node 0 [m]; in two dimensions the third component is ignored, as in all
+    /// vectors here.
     pub origin: [f64; 3],
     /// Shape function.
     pub shape: ShapeKind,
@@ -40,7 +44,7 @@ pub struct Options {
     pub wall_treatment: WallTreatment,
     /// Whether x is a radius and y the axis of rotational symmetry; volumes, masses and forces are then per radian.
     pub axisymmetric: bool,
-    /// Terms of the filter of [`TransferKind::Xpic`] and [`TransferKind::Fmpm`].
+    /// Terms of the filter of [`TransferKind::Xpic`] and [`TransferKind::Fmpm`]; 0: the default, 2.
     pub filter_order: i32,
     /// Whether particles carry a body force.
     pub body_force: bool,
@@ -66,12 +70,15 @@ impl Default for Options {
             box_max: [0.0; 3],
             wall_treatment: WallTreatment::Plain,
             axisymmetric: false,
-            filter_order: 2,
+            filter_order: FILTER_ORDER,
             body_force: false,
             retries: 0,
         }
     }
 }
+
+/// Terms of a filter if the host does not care.
+const FILTER_ORDER: i32 = 2;
 
 /// Most retries of a step; each at least halves it or does what the material asks for.
 const MOST_RETRIES: i32 = 20;
@@ -80,14 +87,51 @@ const MOST_RETRIES: i32 = 20;
 const MOST_BLOCKS: f64 = 1e8;
 
 impl Options {
+    /// The options as the engine uses them, if a world can be made of them: vectors are zero along
+    /// axes that the world does not have, and a filter of order 0 is the default one.
+    pub fn normalised(&self) -> Result<Options> {
+        if self.dimension != 2 && self.dimension != 3 {
+            return Err(wrong_dimension(self.dimension));
+        }
+        let options = Options {
+            origin: self.vector(self.origin),
+            gravity: self.vector(self.gravity),
+            box_min: self.vector(self.box_min),
+            box_max: self.vector(self.box_max),
+            filter_order: if self.filter_order == 0 { FILTER_ORDER } else { self.filter_order },
+            ..self.clone()
+        };
+        options.check_values()?;
+        Ok(options)
+    }
+
     /// Whether a world can be made of these options.
     pub fn check(&self) -> Result<()> {
-        if self.dimension != 2 && self.dimension != 3 {
-            return Err(Error::invalid(format!(
-                "dimension must be 2 or 3, got {}",
-                self.dimension
-            )));
-        }
+        self.normalised().map(drop)
+    }
+
+    /// Gravity [m/s²] as the engine uses it, if it can: normalised as that of the options.
+    pub fn normalised_gravity(&self, gravity: [f64; 3]) -> Result<[f64; 3]> {
+        let gravity = self.vector(gravity);
+        self.check_gravity(gravity)?;
+        Ok(gravity)
+    }
+
+    /// The same for gravity by a table.
+    pub fn normalised_gravity_table(&self, table: Table) -> Result<Table> {
+        let table = table.keeping(|axis| axis < self.dimension);
+        table.rows().iter().try_for_each(|row| self.check_gravity(*row))?;
+        Ok(table)
+    }
+
+    /// A vector with zeros along the axes that the world does not have.
+    fn vector(&self, mut vector: [f64; 3]) -> [f64; 3] {
+        vector[self.dimension..].fill(0.0);
+        vector
+    }
+
+    /// Checks normalised options, one by one and together.
+    fn check_values(&self) -> Result<()> {
         if !(self.spacing > 0.0 && self.spacing.is_finite()) {
             return Err(Error::invalid(format!(
                 "spacing must be positive and finite [m], got {}",
@@ -111,7 +155,7 @@ impl Options {
         }
         if !(1..=filter::MOST).contains(&self.filter_order) {
             return Err(Error::invalid(format!(
-                "filter_order must be 1 (PIC) to {}, got {}",
+                "filter_order must be 1 (PIC) to {}, or 0 for the default, got {}",
                 filter::MOST,
                 self.filter_order
             )));
@@ -150,7 +194,7 @@ impl Options {
     }
 
     /// Gravity must be finite, and along the axis in axial symmetry.
-    pub fn check_gravity(&self, gravity: [f64; 3]) -> Result<()> {
+    fn check_gravity(&self, gravity: [f64; 3]) -> Result<()> {
         if !gravity.iter().all(|g| g.is_finite()) {
             return Err(Error::invalid(format!("gravity must be finite [m/s^2], got {gravity:?}")));
         }
@@ -216,10 +260,65 @@ impl Options {
     }
 }
 
+/// A world has two or three dimensions.
+pub fn wrong_dimension(got: impl Display) -> Error {
+    Error::invalid(format!("dimension must be 2 or 3, got {got}"))
+}
+
 /// Damping must lie in [0, 1).
 pub fn check_damping(damping: f64) -> Result<()> {
     if (0.0..1.0).contains(&damping) {
         return Ok(());
     }
     Err(Error::invalid(format!("damping must lie in [0, 1), got {damping}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plane world with something in each place that two dimensions ignore.
+    fn careless() -> Options {
+        Options {
+            dimension: 2,
+            spacing: 0.1,
+            origin: [0.1, 0.2, f64::NAN],
+            transfer: TransferKind::Xpic,
+            gravity: [1.0, -9.81, f64::INFINITY],
+            grid_policy: GridPolicy::Static,
+            box_min: [0.0, 0.0, 1.0],
+            box_max: [1.0, 1.0, -1.0],
+            filter_order: 0,
+            ..Options::default()
+        }
+    }
+
+    #[test]
+    fn what_two_dimensions_do_not_have_is_zero_and_no_filter_the_default_one() {
+        let options = careless().normalised().expect("good options");
+        assert_eq!(options.origin, [0.1, 0.2, 0.0]);
+        assert_eq!(options.gravity, [1.0, -9.81, 0.0]);
+        assert_eq!((options.box_min, options.box_max), ([0.0; 3], [1.0, 1.0, 0.0]));
+        assert_eq!(options.filter_order, 2);
+    }
+
+    #[test]
+    fn what_three_dimensions_need_is_not_ignored_there() {
+        let refused = |options: Options, part: &str| {
+            let error = options.normalised().expect_err(part);
+            assert!(error.message.contains(part), "{error}");
+        };
+        let solid = Options { dimension: 3, ..careless() };
+        refused(solid.clone(), "origin must be finite");
+        let solid = Options { origin: [0.0; 3], ..solid };
+        refused(solid.clone(), "gravity must be finite");
+        let solid = Options { gravity: [0.0, 0.0, -9.81], ..solid };
+        refused(solid.clone(), "along z they are 1 and -1");
+        let solid = Options { box_max: [1.0, 1.0, 2.0], ..solid };
+        let normalised = solid.normalised().expect("good options");
+        assert_eq!(normalised.gravity, solid.gravity);
+        assert_eq!((normalised.box_min, normalised.box_max), (solid.box_min, solid.box_max));
+        refused(Options { dimension: 1, ..solid.clone() }, "dimension must be 2 or 3, got 1");
+        refused(Options { filter_order: -1, ..solid }, "or 0 for the default, got -1");
+    }
 }

@@ -30,9 +30,8 @@ impl World {
     /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the options.
     pub fn set_gravity_table(&mut self, table: Option<Table>) -> Result<()> {
         self.check_alive()?;
-        for gravity in table.iter().flat_map(Table::rows) {
-            self.options().check_gravity(*gravity)?;
-        }
+        let table =
+            table.map(|table| self.options().normalised_gravity_table(table)).transpose()?;
         self.conditions_mut()?.gravity = table;
         Ok(())
     }
@@ -40,7 +39,7 @@ impl World {
     /// Sets constant gravity [m/s²] from the next step on; a table is forgotten.
     pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<()> {
         self.check_alive()?;
-        self.options().check_gravity(gravity)?;
+        let gravity = self.options().normalised_gravity(gravity)?;
         on!(&mut self, s => s.method.options.gravity = gravity);
         self.conditions_mut()?.gravity = None;
         Ok(())
@@ -151,5 +150,34 @@ impl<const D: usize> Parts<D> {
                 other.id, other.condition.position
             )),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::context::Context;
+    use crate::step::options::Options;
+
+    #[test]
+    fn worlds_of_rust_callers_use_normalised_options_and_gravity() {
+        let context = Context::new(Some(1)).expect("a context");
+        let careless = Options {
+            dimension: 2,
+            spacing: 0.1,
+            gravity: [1.0, -9.81, f64::INFINITY],
+            filter_order: 0,
+            ..Options::default()
+        };
+        let mut world = World::new(&context, &careless).expect("a world");
+        assert_eq!(world.options().gravity, [1.0, -9.81, 0.0]);
+        assert_eq!(world.options().filter_order, 2);
+
+        world.set_gravity([0.0, -1.0, 7.0]).expect("a gravity");
+        assert_eq!(world.options().gravity, [0.0, -1.0, 0.0]);
+        let rows = [[0.0, -2.0, 7.0], [0.0, -3.0, 8.0]];
+        let table = Table::new("gravity", &[0.0, 1.0], &rows).expect("a table");
+        world.set_gravity_table(Some(table)).expect("a table of gravity");
+        assert_eq!(on!(&world, s => s.gravity(0.5)), [0.0, -2.5, 0.0]);
     }
 }

@@ -71,8 +71,8 @@ pub(crate) use on;
 impl World {
     /// An empty world. Errors name the option that is wrong.
     pub fn new(context: &Arc<Context>, options: &Options) -> Result<World> {
-        options.check()?;
-        let (isa, team, options) = (context.isa(), context.team(), options.clone());
+        let options = options.normalised()?;
+        let (isa, team) = (context.isa(), context.team());
         let inner = match options.dimension {
             2 => Inner::Two(Box::new(Parts::new(options, isa, team)?)),
             _ => Inner::Three(Box::new(Parts::new(options, isa, team)?)),

@@ -39,13 +39,27 @@ static void bad_methods(void) {
   o.pic_rate = -1.0;
   EXPECT(lahar_world_create(context, &o, &made), LAHAR_ERROR_INVALID_ARGUMENT, "pic_rate must be 0");
 
+  /* What two dimensions ignore, and the default filter. */
+  OK(lahar_world_options_init(&o, sizeof o));
+  o.spacing = 0.1;
+  o.transfer = LAHAR_TRANSFER_XPIC;
+  o.filter_order = 0;
+  o.origin[2] = NAN;
+  o.gravity[2] = INFINITY;
+  EXPECT(lahar_world_create(context, &o, &made), LAHAR_ERROR_INVALID_ARGUMENT, "origin must be finite");
+  o.dimension = 2;
+  OK(lahar_world_create(context, &o, &made));
+  OK(lahar_world_set_gravity(made, (const double[3]){0, -9.81, NAN}));
+  lahar_world_free(made);
+
   /* GIMP without sizes, a size that is none, a particle on the axis of symmetry, walls between nodes, a particle behind a wall. */
   OK(lahar_particles_init(&particles, sizeof particles));
   particles.count = 1;
   particles.position.data = position;
   particles.volume.data = volume;
   particles.density = 1000.0;
-  o.pic_rate = 0.0;
+  OK(lahar_world_options_init(&o, sizeof o));
+  o.spacing = 0.1;
   o.dimension = 2;
   o.shape = LAHAR_SHAPE_CONTIGUOUS_GIMP;
   o.wall_treatment = LAHAR_WALLS_MODIFIED;
