@@ -11,7 +11,8 @@ use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::host_arrays::{ParticleArrays, Strided, StridedMut, Strides};
 use lahar::world::options::Options;
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use std::sync::Arc;
 
 /// The choices of the method that every family takes: key `method` of a set-up.
@@ -19,13 +20,14 @@ use std::sync::Arc;
 #[serde(default, deny_unknown_fields)]
 pub struct Method {
     /// Shape function.
-    pub shape: Shape,
+    #[serde(deserialize_with = "shape")]
+    pub shape: ShapeKind,
     /// Transfer scheme.
     pub transfer: Transfer,
     /// Rate at which PIC damps FLIP [1/s].
     pub pic_rate: f64,
     /// Order of the stages.
-    pub order: Order,
+    pub order: StepOrder,
     /// Courant number.
     pub cfl: f64,
     /// What shape functions do next to walls.
@@ -37,113 +39,90 @@ pub struct Method {
 impl Default for Method {
     fn default() -> Self {
         Self {
-            shape: Shape::Quadratic,
-            transfer: Transfer::Flip,
+            shape: ShapeKind::QuadraticBspline,
+            transfer: Transfer::Of(TransferKind::PicFlip),
             pic_rate: 0.0,
-            order: Order::Musl,
+            order: StepOrder::Musl,
             cfl: 0.4,
-            walls: Walls::Plain,
+            walls: Walls::Of(WallTreatment::Plain),
             filter_order: 2,
         }
     }
 }
 
-/// Shape functions by name.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
-    /// Piecewise linear.
-    Linear,
-    /// Quadratic B-spline.
-    Quadratic,
-    /// Cubic B-spline.
-    Cubic,
-    /// Uniform GIMP.
-    UniformGimp,
-    /// Contiguous-particle GIMP.
-    ContiguousGimp,
+/// A shape function by its key; splines by their degree alone.
+fn shape<'de, D: Deserializer<'de>>(source: D) -> std::result::Result<ShapeKind, D::Error> {
+    let key = String::deserialize(source)?;
+    match key.as_str() {
+        "quadratic" => Ok(ShapeKind::QuadraticBspline),
+        "cubic" => Ok(ShapeKind::CubicBspline),
+        key => ShapeKind::from_key(key).map_err(D::Error::custom),
+    }
 }
 
-/// Treatments of walls by name.
+/// What holds shapes back at walls, and where walls stand.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
+#[serde(try_from = "String")]
 pub enum Walls {
-    /// None, and walls where no free node's function reaches them, see [`Method::wall_shift`].
-    Plain,
-    /// None, and walls on node planes whatever the shape: the nodes on them and behind are held.
+    /// Plain, and walls on node planes whatever the shape: the nodes on them and behind are held.
     PlainOnNodes,
-    /// Modified shape functions.
-    Modified,
+    /// A treatment of the engine; with the plain one, walls stand where no free node's function
+    /// reaches them, see [`Method::wall_shift`].
+    Of(WallTreatment),
+}
+
+impl TryFrom<String> for Walls {
+    type Error = Error;
+
+    fn try_from(key: String) -> Result<Self> {
+        match key.as_str() {
+            "plain_on_nodes" => Ok(Self::PlainOnNodes),
+            key => WallTreatment::from_key(key).map(Self::Of),
+        }
+    }
 }
 
 /// Transfer schemes by name.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
+#[serde(try_from = "String")]
 pub enum Transfer {
-    /// FLIP, with PIC at `pic_rate`.
-    Flip,
     /// PIC alone.
     Pic,
-    /// Affine.
-    Apic,
-    /// Affine by the velocity gradient.
-    Tpic,
-    /// Affine with the forces of moving least squares.
-    Mls,
-    /// Extended.
-    Xpic,
-    /// Full mass matrix.
-    Fmpm,
+    /// A scheme of the engine; PIC replaces FLIP at `pic_rate`.
+    Of(TransferKind),
 }
 
-/// Orders of the stages by name.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum Order {
-    /// Stress from the updated velocities.
-    Usl,
-    /// Stress from velocities that were scattered once more.
-    Musl,
-    /// Stress first.
-    Usf,
-    /// Stress half first, half last.
-    Usavg,
+impl TryFrom<String> for Transfer {
+    type Error = Error;
+
+    fn try_from(key: String) -> Result<Self> {
+        match key.as_str() {
+            "pic" => Ok(Self::Pic),
+            "flip" => Ok(Self::Of(TransferKind::PicFlip)),
+            key => TransferKind::from_key(key).map(Self::Of),
+        }
+    }
 }
 
 impl Method {
     /// Options of a plane world with this method.
     pub fn options(&self, spacing: f64) -> Options {
         let (transfer, pic_rate) = match self.transfer {
-            Transfer::Flip => (TransferKind::PicFlip, self.pic_rate),
             Transfer::Pic => (TransferKind::PicFlip, f64::INFINITY),
-            Transfer::Apic => (TransferKind::Apic, 0.0),
-            Transfer::Tpic => (TransferKind::Tpic, 0.0),
-            Transfer::Mls => (TransferKind::Mls, 0.0),
-            Transfer::Xpic => (TransferKind::Xpic, 0.0),
-            Transfer::Fmpm => (TransferKind::Fmpm, 0.0),
+            Transfer::Of(TransferKind::PicFlip) => (TransferKind::PicFlip, self.pic_rate),
+            Transfer::Of(other) => (other, 0.0),
         };
         Options {
             dimension: 2,
             spacing,
-            shape: match self.shape {
-                Shape::Linear => ShapeKind::Linear,
-                Shape::Quadratic => ShapeKind::QuadraticBspline,
-                Shape::Cubic => ShapeKind::CubicBspline,
-                Shape::UniformGimp => ShapeKind::UniformGimp,
-                Shape::ContiguousGimp => ShapeKind::ContiguousGimp,
-            },
+            shape: self.shape,
             transfer,
             pic_rate,
-            order: match self.order {
-                Order::Usl => StepOrder::Usl,
-                Order::Musl => StepOrder::Musl,
-                Order::Usf => StepOrder::Usf,
-                Order::Usavg => StepOrder::Usavg,
-            },
+            order: self.order,
             cfl: self.cfl,
             wall_treatment: match self.walls {
-                Walls::Plain | Walls::PlainOnNodes => WallTreatment::Plain,
-                Walls::Modified => WallTreatment::Modified,
+                Walls::PlainOnNodes => WallTreatment::Plain,
+                Walls::Of(treatment) => treatment,
             },
             filter_order: self.filter_order,
             ..Options::default()
@@ -153,7 +132,8 @@ impl Method {
     /// How far the origin of the grid is shifted so that walls at multiples of the spacing hold no free node's function back:
     /// quadratic splines that are not modified want walls on half-cell planes, others on node planes. In units of the spacing.
     pub fn wall_shift(&self) -> f64 {
-        if self.shape == Shape::Quadratic && self.walls == Walls::Plain { 0.5 } else { 0.0 }
+        let shifted = (ShapeKind::QuadraticBspline, Walls::Of(WallTreatment::Plain));
+        if (self.shape, self.walls) == shifted { 0.5 } else { 0.0 }
     }
 }
 

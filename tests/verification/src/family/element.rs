@@ -2,6 +2,7 @@
 
 use lahar::error::{Error, Result, Status};
 use lahar::particles::seeding::{Fill, Region};
+use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar_model_drucker_prager::DruckerPrager;
 use lahar_plugin::{Driver, ModelTable};
@@ -115,7 +116,7 @@ fn model(setup: &Setup, values: &[(&str, f64)]) -> Result<Vec<Point>> {
 /// linear field, which the affine transfer reproduces. A controller holds the lateral stress.
 fn cell(setup: &Setup, values: &[(&str, f64)]) -> Result<Vec<Point>> {
     let (context, soil) = material("drucker_prager", values)?;
-    let method = Method { transfer: Transfer::Apic, ..Method::default() };
+    let method = Method { transfer: Transfer::Of(TransferKind::Apic), ..Method::default() };
     let mut options = method.options(1.0);
     options.dimension = 3;
     let mut world = World::new(&context, &options)?;
