@@ -51,29 +51,46 @@ choices! {
     }
 }
 
+/// What the engine knows of a shape function whatever its type.
+struct Facts {
+    nodes: usize,
+    first_offset: f64,
+    moment: Option<f64>,
+    is_sized: bool,
+}
+
+const fn facts<S: ShapeFunction<N>, const N: usize>() -> Facts {
+    Facts { nodes: N, first_offset: S::FIRST_OFFSET, moment: S::MOMENT, is_sized: S::SIZED }
+}
+
 impl ShapeKind {
+    const fn facts(self) -> Facts {
+        match self {
+            Self::Linear => facts::<linear::Linear, 2>(),
+            Self::QuadraticBspline => facts::<quadratic_bspline::QuadraticBspline, 3>(),
+            Self::CubicBspline => facts::<cubic_bspline::CubicBspline, 4>(),
+            Self::UniformGimp | Self::ContiguousGimp => facts::<gimp::Gimp, 3>(),
+        }
+    }
+
     /// Nodes of a stencil along one axis.
     pub const fn nodes(self) -> usize {
-        match self {
-            Self::Linear => 2,
-            Self::QuadraticBspline | Self::UniformGimp | Self::ContiguousGimp => 3,
-            Self::CubicBspline => 4,
-        }
+        self.facts().nodes
     }
 
     /// The lowest node of the stencil at ξ is floor(ξ − offset); ξ in units of the spacing.
     pub const fn first_offset(self) -> f64 {
-        match self {
-            Self::Linear => linear::Linear::FIRST_OFFSET,
-            Self::QuadraticBspline => quadratic_bspline::QuadraticBspline::FIRST_OFFSET,
-            Self::CubicBspline => cubic_bspline::CubicBspline::FIRST_OFFSET,
-            Self::UniformGimp | Self::ContiguousGimp => gimp::Gimp::FIRST_OFFSET,
-        }
+        self.facts().first_offset
+    }
+
+    /// Σ w (x_i − x_p)² along one axis, in units of h², if it is the same everywhere.
+    pub const fn moment(self) -> Option<f64> {
+        self.facts().moment
     }
 
     /// Whether particles need a size.
     pub const fn is_sized(self) -> bool {
-        matches!(self, Self::UniformGimp | Self::ContiguousGimp)
+        self.facts().is_sized
     }
 
     /// How far from a wall, in units of the spacing, nodes still feel it: radius of the support − 1. (A particle of GIMP that touches a wall on a

@@ -38,23 +38,28 @@ pub struct Kernels<const D: usize> {
 }
 
 impl<const D: usize> Kernels<D> {
-    /// The kernels of checked options. Linear shape functions have nothing to modify next to a wall on a node plane.
+    /// The kernels of checked options. Linear shape functions have nothing to modify next to a wall
+    /// on a node plane.
     pub fn new(options: &Options) -> Self {
-        use {ShapeKind as S, WallTreatment as W};
-        match (options.shape, options.wall_treatment) {
-            (S::QuadraticBspline, _) if options.transfer == TransferKind::Mls => {
-                Self::of::<Mls<QuadraticBspline>, 3>()
-            }
-            (S::CubicBspline, _) if options.transfer == TransferKind::Mls => {
-                Self::of::<Mls<CubicBspline>, 4>()
-            }
-            (S::Linear, _) => Self::of::<Linear, 2>(),
-            (S::QuadraticBspline, W::Plain) => Self::of::<QuadraticBspline, 3>(),
-            (S::QuadraticBspline, W::Modified) => Self::of::<Modified<QuadraticBspline>, 3>(),
-            (S::CubicBspline, W::Plain) => Self::of::<CubicBspline, 4>(),
-            (S::CubicBspline, W::Modified) => Self::of::<Modified<CubicBspline>, 4>(),
-            (S::UniformGimp | S::ContiguousGimp, W::Plain) => Self::of::<Gimp, 3>(),
-            (S::UniformGimp | S::ContiguousGimp, W::Modified) => Self::of::<Modified<Gimp>, 3>(),
+        match options.shape {
+            ShapeKind::Linear => Self::of::<Linear, 2>(),
+            ShapeKind::QuadraticBspline => Self::of_spline::<QuadraticBspline, 3>(options),
+            ShapeKind::CubicBspline => Self::of_spline::<CubicBspline, 4>(options),
+            ShapeKind::UniformGimp | ShapeKind::ContiguousGimp => Self::walled::<Gimp, 3>(options),
+        }
+    }
+
+    fn of_spline<S: ShapeFunction<N>, const N: usize>(options: &Options) -> Self {
+        if options.transfer == TransferKind::Mls {
+            return Self::of::<Mls<S>, N>();
+        }
+        Self::walled::<S, N>(options)
+    }
+
+    fn walled<S: ShapeFunction<N>, const N: usize>(options: &Options) -> Self {
+        match options.wall_treatment {
+            WallTreatment::Plain => Self::of::<S, N>(),
+            WallTreatment::Modified => Self::of::<Modified<S>, N>(),
         }
     }
 

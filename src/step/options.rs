@@ -213,8 +213,7 @@ impl Options {
     /// Refuses what does not go together, with the nearest combination that does.
     fn check_combination(&self) -> Result<()> {
         let unsupported = |text: String| Err(Error::new(Status::Unsupported, text));
-        let moment = matches!(self.shape, ShapeKind::QuadraticBspline | ShapeKind::CubicBspline);
-        if self.transfer == TransferKind::Mls && !moment {
+        if self.transfer == TransferKind::Mls && self.shape.moment().is_none() {
             return unsupported(format!(
                 "transfer MLS divides by Σ w r², which is not the same everywhere, or vanishes, for {} shape functions: use a \
                  quadratic or cubic B-spline, or transfer TPIC with this shape",
