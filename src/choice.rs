@@ -4,6 +4,7 @@
 //! constants of `lahar.h` and `lahar.f90` are written from the same list by `cargo xtask headers`.
 
 use crate::error::{Error, Result};
+use std::ffi::CStr;
 
 /// One value of a choice.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,8 @@ pub struct Value {
     pub name: &'static str,
     /// Its constant in `lahar.h`.
     pub constant: &'static str,
+    /// The same.
+    pub constant_c: &'static CStr,
     /// Lines of its documentation, in `lahar.h` and here.
     pub doc: &'static [&'static str],
 }
@@ -94,6 +97,7 @@ macro_rules! choices {
                     key: Self::$Value.key(),
                     name: Self::$Value.name(),
                     constant: stringify!($constant),
+                    constant_c: $crate::choice::c_text(concat!(stringify!($constant), "\0")),
                     doc: &[$($doc),+],
                 }),+],
             };
@@ -155,6 +159,14 @@ macro_rules! name_of {
 }
 
 pub(crate) use {choices, name_of};
+
+/// A text that ends with its only NUL.
+pub(crate) const fn c_text(text: &'static str) -> &'static CStr {
+    match CStr::from_bytes_with_nul(text.as_bytes()) {
+        Ok(text) => text,
+        Err(_) => panic!("a NUL stands in the middle of a text"),
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -2,111 +2,80 @@
 //!
 //! Positive statuses leave every object as it was; negative ones poison the object: it answers queries and can be freed.
 
-/// The list of statuses. The constants of `lahar.h` and `lahar.f90`, `lahar_status_name` and the documentation agree
-/// with it; a test holds them together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(i32)]
-pub enum Status {
-    /// Done.
-    Ok = 0,
-    /// A pointer that must not be NULL is NULL.
-    NullArgument = 1,
-    /// `struct_size` is not one that this library knows, or the unknown tail is not zero.
-    StructSize = 2,
-    /// A value is not finite, of the wrong sign, or not one of those allowed.
-    InvalidArgument = 3,
-    /// No model, parameter or field has this name; the message tells the closest one.
-    UnknownName = 4,
-    /// A required parameter of a model is missing.
-    MissingParameter = 5,
-    /// A parameter lies outside its hard bounds, or the model refuses the combination.
-    OutOfBounds = 6,
-    /// No body, wall or plugin has this id.
-    NotFound = 7,
-    /// A view is open that forbids the call.
-    ViewOpen = 8,
-    /// The view's data belong to an earlier step.
-    ViewStale = 9,
-    /// Another thread is using the object.
-    Busy = 10,
-    /// The field can be read but not written.
-    ReadOnly = 11,
-    /// This combination of options is not supported; the message tells the nearest that is.
-    Unsupported = 12,
-    /// An array is shorter than the result; the needed size is given.
-    BufferTooSmall = 13,
-    /// The time step exceeds the stable one; nothing was done.
-    StepTooLarge = 100,
-    /// The host left a value in a particle field that is not finite, not positive where it must be, or outside the grid; nothing was
-    /// done.
-    NonFiniteInput = 101,
-    /// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
-    OutsideGrid = 102,
-    /// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
-    SmallerStep = 103,
-    /// A material gave no wave speed or no first state; nothing was done.
-    MaterialRefused = 104,
-    /// A file could not be read or written.
-    File = 200,
-    /// The plugin file is missing.
-    PluginNotFound = 201,
-    /// The file is not a plugin, or its tables break the rules.
-    PluginInvalid = 202,
-    /// The plugin speaks another major version of the plugin ABI.
-    PluginAbi = 203,
-    /// The plugin refused to load.
-    PluginRefused = 204,
-    /// Threads could not be started, or the process was forked after they were.
-    Threads = 205,
-    /// The memory for particles or grid is not to be had; nothing has changed.
-    OutOfMemory = 206,
-    /// A defect of lahar was caught; the object is poisoned.
-    Panic = -1,
-    /// A material failed at a point in the middle of a step; the world is poisoned.
-    MaterialFailed = -2,
-    /// A particle's state became infinite or not a number in a step; the world is poisoned.
-    NonFinite = -3,
-    /// The object was poisoned by an earlier call; it can only be queried and freed.
-    Poisoned = -4,
-    /// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is poisoned.
-    PluginBroken = -5,
-}
+use crate::choice::choices;
 
-impl Status {
-    /// Every status, in the order of the documentation.
-    pub const ALL: [Status; 31] = [
-        Status::Ok,
-        Status::NullArgument,
-        Status::StructSize,
-        Status::InvalidArgument,
-        Status::UnknownName,
-        Status::MissingParameter,
-        Status::OutOfBounds,
-        Status::NotFound,
-        Status::ViewOpen,
-        Status::ViewStale,
-        Status::Busy,
-        Status::ReadOnly,
-        Status::Unsupported,
-        Status::BufferTooSmall,
-        Status::StepTooLarge,
-        Status::NonFiniteInput,
-        Status::OutsideGrid,
-        Status::SmallerStep,
-        Status::MaterialRefused,
-        Status::File,
-        Status::PluginNotFound,
-        Status::PluginInvalid,
-        Status::PluginAbi,
-        Status::PluginRefused,
-        Status::Threads,
-        Status::OutOfMemory,
-        Status::Panic,
-        Status::MaterialFailed,
-        Status::NonFinite,
-        Status::Poisoned,
-        Status::PluginBroken,
-    ];
+choices! {
+    /// What can go wrong. The constants of `lahar.h` and `lahar.f90`, and what `lahar_status_name`
+    /// gives, come from this list.
+    #[derive(Hash)]
+    pub enum Status: "status" {
+        /// Done.
+        Ok = 0, "ok", LAHAR_OK;
+        /// A pointer that must not be NULL is NULL.
+        NullArgument = 1, "null_argument", LAHAR_ERROR_NULL_ARGUMENT;
+        /// `struct_size` is not one that this library knows, or the unknown tail is not zero.
+        StructSize = 2, "struct_size", LAHAR_ERROR_STRUCT_SIZE;
+        /// A value is not finite, of the wrong sign, or not one of those allowed.
+        InvalidArgument = 3, "invalid_argument", LAHAR_ERROR_INVALID_ARGUMENT;
+        /// No model, parameter or field has this name; the message names the closest one.
+        UnknownName = 4, "unknown_name", LAHAR_ERROR_UNKNOWN_NAME;
+        /// A required parameter of a model is missing.
+        MissingParameter = 5, "missing_parameter", LAHAR_ERROR_MISSING_PARAMETER;
+        /// A parameter lies outside its hard bounds, or the model refuses the combination.
+        OutOfBounds = 6, "out_of_bounds", LAHAR_ERROR_OUT_OF_BOUNDS;
+        /// No body, wall or plugin has this id.
+        NotFound = 7, "not_found", LAHAR_ERROR_NOT_FOUND;
+        /// A view is open that forbids the call.
+        ViewOpen = 8, "view_open", LAHAR_ERROR_VIEW_OPEN;
+        /// The view's data belong to an earlier step.
+        ViewStale = 9, "view_stale", LAHAR_ERROR_VIEW_STALE;
+        /// Another thread is using the object.
+        Busy = 10, "busy", LAHAR_ERROR_BUSY;
+        /// The field can be read but not written.
+        ReadOnly = 11, "read_only", LAHAR_ERROR_READ_ONLY;
+        /// This combination of options is not supported; the message names the nearest that is.
+        Unsupported = 12, "unsupported", LAHAR_ERROR_UNSUPPORTED;
+        /// An array is shorter than the result; the needed size is given.
+        BufferTooSmall = 13, "buffer_too_small", LAHAR_ERROR_BUFFER_TOO_SMALL;
+        /// The time step exceeds the stable one; nothing was done.
+        StepTooLarge = 100, "step_too_large", LAHAR_ERROR_STEP_TOO_LARGE;
+        /// The host left a value in a particle field that is not finite, not positive where it must
+        /// be, or a position outside the grid; nothing was done.
+        NonFiniteInput = 101, "non_finite_input", LAHAR_ERROR_NON_FINITE_INPUT;
+        /// A particle stands outside the box of a static grid, or beyond the range of block
+        /// coordinates; nothing was done.
+        OutsideGrid = 102, "outside_grid", LAHAR_ERROR_OUTSIDE_GRID;
+        /// A material failed or asked for a smaller time step; nothing was done. Only with the
+        /// option `retries`.
+        SmallerStep = 103, "smaller_step", LAHAR_ERROR_SMALLER_STEP;
+        /// A material gave no wave speed or no first state; nothing was done.
+        MaterialRefused = 104, "material_refused", LAHAR_ERROR_MATERIAL_REFUSED;
+        /// A file could not be read or written.
+        File = 200, "file", LAHAR_ERROR_FILE;
+        /// The plugin file is missing.
+        PluginNotFound = 201, "plugin_not_found", LAHAR_ERROR_PLUGIN_NOT_FOUND;
+        /// The file is not a plugin, or its tables break the rules.
+        PluginInvalid = 202, "plugin_invalid", LAHAR_ERROR_PLUGIN_INVALID;
+        /// The plugin speaks another major version of the plugin ABI.
+        PluginAbi = 203, "plugin_abi", LAHAR_ERROR_PLUGIN_ABI;
+        /// The plugin refused to load.
+        PluginRefused = 204, "plugin_refused", LAHAR_ERROR_PLUGIN_REFUSED;
+        /// Threads could not be started, or the process was forked after they were.
+        Threads = 205, "threads", LAHAR_ERROR_THREADS;
+        /// The memory for particles or grid is not to be had; nothing has changed.
+        OutOfMemory = 206, "out_of_memory", LAHAR_ERROR_OUT_OF_MEMORY;
+        /// A defect of lahar was caught; the object is poisoned.
+        Panic = -1, "panic", LAHAR_ERROR_PANIC;
+        /// A material failed at a point in the middle of a step; the world is poisoned.
+        MaterialFailed = -2, "material_failed", LAHAR_ERROR_MATERIAL_FAILED;
+        /// A particle's state became infinite or not a number in a step; the world is poisoned.
+        NonFinite = -3, "non_finite", LAHAR_ERROR_NON_FINITE;
+        /// The object was poisoned by an earlier call; it can only be queried and freed.
+        Poisoned = -4, "poisoned", LAHAR_ERROR_POISONED;
+        /// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is
+        /// poisoned.
+        PluginBroken = -5, "plugin_broken", LAHAR_ERROR_PLUGIN_BROKEN;
+    }
 }
 
 /// Where in a run an error happened, as far as it is known.

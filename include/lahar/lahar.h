@@ -61,7 +61,7 @@ struct lahar_host_api;
 // A value is not finite, of the wrong sign, or not one of those allowed.
 #define LAHAR_ERROR_INVALID_ARGUMENT 3
 
-// No model, parameter or field has this name; the message tells the closest one.
+// No model, parameter or field has this name; the message names the closest one.
 #define LAHAR_ERROR_UNKNOWN_NAME 4
 
 // A required parameter of a model is missing.
@@ -85,7 +85,7 @@ struct lahar_host_api;
 // The field can be read but not written.
 #define LAHAR_ERROR_READ_ONLY 11
 
-// This combination of options is not supported; the message tells the nearest that is.
+// This combination of options is not supported; the message names the nearest that is.
 #define LAHAR_ERROR_UNSUPPORTED 12
 
 // An array is shorter than the result; the needed size is given.
@@ -94,14 +94,16 @@ struct lahar_host_api;
 // The time step exceeds the stable one; nothing was done.
 #define LAHAR_ERROR_STEP_TOO_LARGE 100
 
-// The host left a value in a particle field that is not finite, not positive where it must be, or a position outside the
-// grid; nothing was done.
+// The host left a value in a particle field that is not finite, not positive where it must
+// be, or a position outside the grid; nothing was done.
 #define LAHAR_ERROR_NON_FINITE_INPUT 101
 
-// A particle stands outside the box of a static grid, or beyond the range of block coordinates; nothing was done.
+// A particle stands outside the box of a static grid, or beyond the range of block
+// coordinates; nothing was done.
 #define LAHAR_ERROR_OUTSIDE_GRID 102
 
-// A material failed or asked for a smaller time step; nothing was done. Only with the option `retries`.
+// A material failed or asked for a smaller time step; nothing was done. Only with the
+// option `retries`.
 #define LAHAR_ERROR_SMALLER_STEP 103
 
 // A material gave no wave speed or no first state; nothing was done.
@@ -140,7 +142,8 @@ struct lahar_host_api;
 // The object was poisoned by an earlier call; it can only be queried and freed.
 #define LAHAR_ERROR_POISONED -4
 
-// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is poisoned.
+// A plugin broke its contract, which LAHAR_CHECK_PLUGINS=1 found; in a step the world is
+// poisoned.
 #define LAHAR_ERROR_PLUGIN_BROKEN -5
 
 // What a function answers: 0 done; positive: refused, nothing has changed; negative: the object is poisoned, it

@@ -9,6 +9,7 @@ use lahar::background::GridPolicy;
 use lahar::boundary::WallKind;
 use lahar::choice::List;
 use lahar::context::LogLevel;
+use lahar::error::Status;
 use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Files of `src/ffi` in the order of the header, where a type stands before its first use, and the
 /// choices whose constants stand there.
 const SECTIONS: [(&str, &[List]); 17] = [
-    ("status", &[]),
+    ("status", &[Status::LIST]),
     ("version", &[]),
     ("context", &[LogLevel::LIST]),
     ("error", &[]),
