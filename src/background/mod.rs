@@ -17,6 +17,7 @@ pub use space::Space;
 pub use tiles::{Run, TileNode, Tiles};
 
 use crate::choice::choices;
+use crate::error::Result;
 
 /// Room to make for the nodes of `n` blocks or tiles, whose number comes and goes: an eighth to a half more, so that it seldom grows. It
 /// depends on n alone, not on how many there were before.

@@ -135,6 +135,8 @@ mod tests {
     #[test]
     fn an_empty_table_has_no_columns() {
         assert_eq!(Table::new(&mut [], 0, 0).columns(), 0);
-        assert_eq!(Table::new(&mut [1.0], 1, 1).split_columns(1).1.into_columns::<3>(), [&[]; 3]);
+        let mut one = [1.0];
+        let [none] = Table::new(&mut one, 1, 1).split_columns(1).1.into_columns();
+        assert!(none.is_empty());
     }
 }
