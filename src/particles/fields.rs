@@ -161,6 +161,13 @@ macro_rules! fields {
                 }
             }
 
+            /// A layout with every field; where its columns stand does not matter.
+            #[cfg(test)]
+            fn with_everything() -> Self {
+                let columns = Columns { first: 0, count: 1 };
+                Self { $($name: 0,)+ $($some: Some(columns),)+ state: columns }
+            }
+
             /// All fields of the engine: columns, whether hosts see them, rule, and what hosts may know.
             fn all(&self, dimension: usize) -> Vec<(Columns, Writer, Rule, FieldInfo)> {
                 let mut list = Vec::new();
@@ -287,3 +294,19 @@ pub const NODE_FIELDS: fn(usize) -> [FieldInfo; 4] = |dimension| {
         field(c"force", c"N", c"Force of the particles' stresses on the node", dimension),
     ]
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plugin::RESERVED;
+
+    #[test]
+    fn models_may_not_take_the_names_of_fields() {
+        let fields = Layout::with_everything().fields(2);
+        for (info, _) in &fields {
+            let name = info.name.to_str().expect("ASCII");
+            assert!(RESERVED.contains(&name), "add `{name}` to the reserved names of states");
+        }
+        assert_eq!(RESERVED.len(), fields.len() + 2, "`id` and `body`, and every field");
+    }
+}

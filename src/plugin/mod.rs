@@ -13,6 +13,8 @@ mod register;
 
 pub(crate) use adapter::{Functions, Instance};
 pub(crate) use checked::checks;
+#[cfg(test)]
+pub(crate) use handshake::RESERVED;
 pub(crate) use load::load;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -113,6 +113,72 @@ fn nothing_is_left_to_do_in_the_sources() {
     assert!(breaks.is_empty(), "unfinished:\n{}", breaks.join("\n"));
 }
 
+/// The rooms of `src` from the ground up. A file names its own line and those above it, nothing below.
+const ROOMS: [&[&str]; 16] = [
+    &["error", "choice"],
+    &["simd"],
+    &["memory"],
+    &["log"],
+    &["platform"],
+    &["tensor"],
+    &["parallel"],
+    &["background"],
+    &["shape"],
+    &["transfer"],
+    &["material", "plugin", "context"],
+    &["particles"],
+    &["boundary"],
+    &["step"],
+    &["world"],
+    &["output", "ffi"],
+];
+
+#[test]
+fn arrows_between_the_rooms_of_the_engine_point_down() {
+    let line_of = |room: &str| ROOMS.iter().position(|line| line.contains(&room));
+    let engine: Vec<_> = files(&["rs"])
+        .into_iter()
+        .filter(|path| path.starts_with("src/") && path != "src/lib.rs")
+        .collect();
+    let mut breaks = Vec::new();
+    for path in &engine {
+        let room = path["src/".len()..].split(['/', '.']).next().unwrap_or_default();
+        let own = line_of(room).unwrap_or_else(|| panic!("{path}: add `{room}` to ROOMS"));
+        breaks.extend(offending_lines(std::slice::from_ref(path), |lines, index| {
+            code(lines[index]).split("crate::").skip(1).any(|rest| {
+                let named = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next();
+                named.and_then(line_of).is_some_and(|line| line > own)
+            })
+        }));
+    }
+    assert!(breaks.is_empty(), "arrows that point up:\n{}", breaks.join("\n"));
+}
+
+/// What bundles all parts of a world, and who may take it: the orders, and the integrator that calls them.
+#[test]
+fn stages_take_parts_and_not_the_whole() {
+    let whole = ["src/step/mod.rs", "src/step/parts.rs", "src/step/integrate.rs"];
+    let stages: Vec<_> = files(&["rs"])
+        .into_iter()
+        .filter(|path| path.starts_with("src/step/") && !whole.contains(&path.as_str()))
+        .collect();
+    let breaks = offending_lines(&stages, |lines, index| {
+        let line = code(lines[index]);
+        words(line, "Parts") > 0 || line.contains("mem::take") || words(line, "rayon") > 0
+    });
+    assert!(breaks.is_empty(), "in a stage:\n{}", breaks.join("\n"));
+}
+
+#[test]
+fn who_works_in_parallel_is_decided_in_one_place() {
+    let others: Vec<_> = files(&["rs"])
+        .into_iter()
+        .filter(|path| path.starts_with("src/") && path != "src/parallel.rs")
+        .collect();
+    let breaks = offending_lines(&others, |lines, index| words(code(lines[index]), "rayon") > 0);
+    assert!(breaks.is_empty(), "outside src/parallel.rs:\n{}", breaks.join("\n"));
+}
+
 #[test]
 fn plugins_do_not_depend_on_the_engine() {
     let manifests: Vec<_> = files(&["toml"])
