@@ -2,28 +2,66 @@
 
 use super::WallKind;
 
-/// The velocity that a boundary leaves a node with velocity `v` relative to it [m/s]; `normal` is the unit
-/// vector from the boundary to the material, `friction` the coefficient μ.
+/// A unit vector from a boundary to the material.
+pub trait Normal<const D: usize>: Copy {
+    /// v·n [m/s].
+    fn along(self, v: [f64; D]) -> f64;
+    /// v less its part along the normal, which is `along` n.
+    fn without(self, v: [f64; D], along: f64) -> [f64; D];
+}
+
+/// Any direction.
+impl<const D: usize> Normal<D> for [f64; D] {
+    #[inline(always)]
+    fn along(self, v: [f64; D]) -> f64 {
+        (0..D).map(|a| v[a] * self[a]).sum()
+    }
+
+    #[inline(always)]
+    fn without(self, v: [f64; D], along: f64) -> [f64; D] {
+        std::array::from_fn(|a| v[a] - along * self[a])
+    }
+}
+
+/// The direction of an axis, or against it; what is removed leaves exactly zero.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisNormal {
+    /// The axis.
+    pub axis: usize,
+    /// +1 or −1.
+    pub side: f64,
+}
+
+impl<const D: usize> Normal<D> for AxisNormal {
+    #[inline(always)]
+    fn along(self, v: [f64; D]) -> f64 {
+        self.side * v[self.axis]
+    }
+
+    #[inline(always)]
+    fn without(self, mut v: [f64; D], _along: f64) -> [f64; D] {
+        v[self.axis] = 0.0;
+        v
+    }
+}
+
+/// The velocity that a boundary leaves a node with velocity `v` relative to it [m/s]; `friction` is the
+/// coefficient μ.
 #[inline(always)]
 pub fn constrain<const D: usize>(
     kind: WallKind,
     friction: f64,
-    normal: [f64; D],
+    normal: impl Normal<D>,
     v: [f64; D],
 ) -> [f64; D] {
     if kind == WallKind::Sticky {
         return [0.0; D];
     }
-    let across = (0..D).filter(|a| normal[*a] != 0.0);
-    let along: f64 = across.clone().map(|a| v[a] * normal[a]).sum();
+    let along = normal.along(v);
     if kind != WallKind::Slip && along >= 0.0 {
         return v; // it leaves
     }
-    let mut out = v;
-    for a in across {
-        let whole = normal[a].abs() == 1.0; // then nothing is left, whatever the velocity is
-        out[a] = if whole { 0.0 } else { v[a] - along * normal[a] }; // [BND-1]
-    }
+    let mut out = normal.without(v, along); // [BND-1]
     if kind == WallKind::Friction {
         let tangential = out.iter().map(|c| c * c).sum::<f64>().sqrt();
         let left = (tangential + friction * along).max(0.0); // [BND-2]
@@ -38,7 +76,7 @@ pub fn constrain<const D: usize>(
 mod tests {
     use super::*;
 
-    const UP: [f64; 2] = [0.0, 1.0];
+    const UP: AxisNormal = AxisNormal { axis: 1, side: 1.0 };
 
     #[test]
     fn each_kind_leaves_the_velocity_it_should() {
@@ -62,7 +100,7 @@ mod tests {
         for kind in [WallKind::Slip, WallKind::Separating, WallKind::Friction] {
             for v in [[3.0, -2.0], [0.5, -2.0], [3.0, 2.0]] {
                 let expected = turned(constrain(kind, 0.5, UP, v));
-                let found = constrain(kind, 0.5, turned(UP), turned(v));
+                let found = constrain(kind, 0.5, turned([0.0, 1.0]), turned(v));
                 for a in 0..2 {
                     assert!((found[a] - expected[a]).abs() < 1e-14, "{kind:?}, {v:?}: {found:?}");
                 }

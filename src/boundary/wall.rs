@@ -7,7 +7,8 @@
 
 use std::ops::Range;
 
-use super::{Condition, law};
+use super::Condition;
+use super::law::{self, AxisNormal};
 use crate::background::{EDGE, Key, Space, block_nodes};
 use crate::choice::choices;
 use crate::error::{Error, Result};
@@ -75,23 +76,20 @@ impl Wall {
         Ok(())
     }
 
-    /// Unit vector from the wall to the material.
-    pub fn normal<const D: usize>(&self) -> [f64; D] {
-        std::array::from_fn(|a| if a == self.axis { f64::from(self.side) } else { 0.0 })
-    }
-
     /// Velocity that the wall leaves a node with velocity `v`.
     #[inline(always)]
     pub fn constrain<const D: usize>(&self, v: [f64; D]) -> [f64; D] {
-        law::constrain(self.kind, self.friction, self.normal(), v)
+        let normal = AxisNormal { axis: self.axis, side: f64::from(self.side) };
+        law::constrain(self.kind, self.friction, normal, v)
     }
 
-    /// Calls `visit` with the places in block `key` of the nodes that the wall reaches.
+    /// Calls `visit` with the nodes of block `key` that the wall reaches, row by row.
+    #[inline(always)]
     pub fn reached<const D: usize>(
         &self,
         space: &Space<D>,
         key: &Key<D>,
-        mut visit: impl FnMut(usize),
+        mut visit: impl FnMut(Range<usize>),
     ) {
         let reached = self.reached_layers(space, key);
         if reached.is_empty() {
@@ -101,7 +99,7 @@ impl Wall {
         for slab in (0..block_nodes(D)).step_by(EDGE * pitch) {
             for layer in reached.clone() {
                 let first = slab + layer * pitch;
-                (first..first + pitch).for_each(&mut visit);
+                visit(first..first + pitch);
             }
         }
     }

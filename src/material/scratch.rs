@@ -27,6 +27,8 @@ pub struct Scratch<'a> {
     pub size1: &'a mut [f64],
     /// Volume at the end [m³].
     pub volume1: &'a mut [f64],
+    /// Strain energy at the end [J].
+    pub strain_energy1: &'a mut [f64],
     /// σ at the start, rotated if the model asks for that [Pa], 6 components.
     pub stress0: &'a mut [f64],
     /// σ at the end [Pa], 6 components.
@@ -159,6 +161,7 @@ impl Points {
             gradient,
             carried.sizes,
             1,
+            1,
             6,
             6,
             state,
@@ -195,6 +198,7 @@ impl Points {
             deformation_gradient: take(),
             size1: take(),
             volume1: take(),
+            strain_energy1: take(),
             stress0: take(),
             stress1: take(),
             state0: take(),

@@ -40,6 +40,12 @@ impl<'a> ChunkMut<'a> {
         self.table.column(component)
     }
 
+    /// `N` components from one on.
+    #[inline(always)]
+    pub fn columns<const N: usize>(&self, first: usize) -> [&[f64]; N] {
+        std::array::from_fn(|c| self.column(first + c))
+    }
+
     /// What a gather writes of the particles in `range`, with their marks (see [`ChunkMut::moved`]).
     #[inline(always)]
     pub fn motion<const D: usize>(&mut self, (first, end): (usize, usize)) -> Motion<'_, D> {

@@ -59,23 +59,37 @@ fn apply_walls<const D: usize>(
     for_each_block(background, walls.len(), impulses, team, |space, key, records, impulses| {
         let Records { velocity, increment, force } = records;
         for (entry, impulse) in walls.iter().zip(impulses) {
-            entry.condition.reached(space, key, |n| {
-                let mass = velocity[n].mass();
-                let change = constrain::<D>(&entry.condition, &mut velocity[n]);
-                if let Some((gravity, dt)) = undamped {
-                    let stopped = |a: usize| change[a] != 0.0 && velocity[n].component(a) == 0.0;
-                    for a in (0..D).filter(|a| stopped(*a)) {
-                        let whole = dt * (force[n].component(a) + mass * gravity[a]);
-                        impulse[a] -= whole - mass * increment[n].component(a); // [BND-4]
+            let wall = entry.condition;
+            wall.reached(space, key, |nodes| {
+                let of_row = velocity[nodes.clone()].iter_mut().zip(&mut increment[nodes.clone()]);
+                for ((v, dv), f) in of_row.zip(&force[nodes]) {
+                    let (mass, change) = (v.mass(), constrain::<D>(&wall, v));
+                    if let Some(undamped) = undamped {
+                        undo_damping(undamped, (v, dv, f), &change, impulse); // [BND-4]
                     }
-                }
-                for a in 0..D {
-                    *increment[n].component_mut(a) += change[a];
-                    impulse[a] += mass * change[a];
+                    for a in 0..D {
+                        *dv.component_mut(a) += change[a];
+                        impulse[a] += mass * change[a];
+                    }
                 }
             });
         }
     });
+}
+
+/// Takes from the impulse of a condition what local damping took from the force on the components that it
+/// stopped.
+fn undo_damping<const D: usize>(
+    (gravity, dt): ([f64; 3], f64),
+    (velocity, increment, force): (&Record, &Record, &Record),
+    change: &[f64; D],
+    impulse: &mut [f64; 3],
+) {
+    let mass = velocity.mass();
+    for a in (0..D).filter(|a| change[*a] != 0.0 && velocity.component(*a) == 0.0) {
+        let whole = dt * (force.component(a) + mass * gravity[a]);
+        impulse[a] -= whole - mass * increment.component(a);
+    }
 }
 
 /// Turns the momentum of the second scatter into velocity and applies walls and prescribed velocities to it.
@@ -106,8 +120,11 @@ pub fn hold_at_boundaries<const D: usize>(
     if !walls.is_empty() {
         for_each_block(background, 0, &mut Vec::new(), team, |space, key, records, _| {
             for entry in walls.iter() {
-                entry.condition.reached(space, key, |n| {
-                    constrain::<D>(&entry.condition, &mut records.increment[n]);
+                let wall = entry.condition;
+                wall.reached(space, key, |nodes| {
+                    for increment in &mut records.increment[nodes] {
+                        constrain::<D>(&wall, increment);
+                    }
                 });
             }
         });
@@ -116,6 +133,7 @@ pub fn hold_at_boundaries<const D: usize>(
 }
 
 /// Applies a wall to the velocity of a record and gives the change.
+#[inline(always)]
 fn constrain<const D: usize>(wall: &Wall, record: &mut Record) -> [f64; D] {
     let before: [f64; D] = record.vector();
     let after = wall.constrain(before);

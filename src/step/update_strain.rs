@@ -108,6 +108,8 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
         let Piece { chunk, scratch, material, .. } = piece;
         let (layout, stride) = (chunk.layout, scratch.stride);
         let kinematics = material.model().kinematics;
+        let stresses: [&[f64]; 6] = chunk.columns(layout.stress);
+        let [masses, volumes] = [layout.mass, layout.volume].map(|c| chunk.column(c));
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);
             let l = gradient::<V, D>(scratch.velocity_gradient, stride, (k, end));
@@ -116,7 +118,7 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
                 let (a, b) = SYMMETRIC[c];
                 half * (l[a][b] + l[b][a]) // [STR-1]
             });
-            let mut stress = each!(c in 6 => V::load(&chunk.column(layout.stress + c)[k..end]));
+            let mut stress = each!(c in 6 => V::load(&stresses[c][k..end]));
             if F {
                 let old = deformation_gradient::<V>(chunk, (k, end));
                 let new = deformed_by(&old, &l, dt);
@@ -135,10 +137,10 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
                 increment[c].store(&mut scratch.strain_increment[c * stride + k..][..LANES]);
                 stress[c].store(&mut scratch.stress0[c * stride + k..][..LANES]);
             }
-            let mass = V::load(&chunk.column(layout.mass)[k..end]);
+            let mass = V::load(&masses[k..end]);
             let trace = increment[0] + increment[1] + increment[2];
             let ratio = if F { growth(&l, dt) } else { exp(trace) }; // [STR-3]
-            let new = V::load(&chunk.column(layout.volume)[k..end]) * ratio;
+            let new = V::load(&volumes[k..end]) * ratio;
             new.store(&mut scratch.volume1[k..][..LANES]);
             if let Some(density) = scratch.input(Input::Density) {
                 (mass / new).store(&mut density[k..][..LANES]);

@@ -231,10 +231,12 @@ impl<const D: usize> Parts<D> {
                 });
             }
             for entry in self.conditions.walls.iter() {
-                entry.condition.reached(space, key, |n| {
-                    let free = entry.condition.constrain(force[n]);
-                    walls += difference(&force[n], &free);
-                    force[n] = free;
+                entry.condition.reached(space, key, |nodes| {
+                    for force in &mut force[nodes] {
+                        let free = entry.condition.constrain(*force);
+                        walls += difference(force, &free);
+                        *force = free;
+                    }
                 });
             }
             unbalanced += force.iter().map(size).sum::<f64>();
