@@ -8,6 +8,7 @@ static lahar_world *make_free_block(lahar_context *context, const lahar_material
   lahar_world_options options;
   lahar_fill fill;
   lahar_world *world = NULL;
+  int64_t body = -1;
   OK(lahar_world_options_init(&options, sizeof options));
   options.dimension = 2;
   options.spacing = 0.25;
@@ -15,7 +16,8 @@ static lahar_world *make_free_block(lahar_context *context, const lahar_material
   OK(lahar_world_create(context, &options, &world));
   OK(lahar_fill_init(&fill, sizeof fill));
   fill.density = 2000;
-  OK(lahar_body_add_box(world, material, min, max, &fill, NULL));
+  OK(lahar_body_add_box(world, material, min, max, &fill, &body));
+  CHECK(body == 0);
   return world;
 }
 
@@ -33,6 +35,7 @@ static int64_t load_top(lahar_world *world) {
   lahar_traction t;
   int64_t id = -1;
   OK(lahar_traction_init(&t, sizeof t));
+  t.body = 0;
   t.axis = 1;
   t.box_min[0] = t.box_min[2] = -1;
   t.box_max[0] = t.box_max[2] = 2;
