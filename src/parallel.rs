@@ -235,7 +235,7 @@ impl<'a, T: Sync> Slices for Cut<&'a [T]> {
 
 /// Tuples of slices; all have as many pieces as the first.
 macro_rules! tuples {
-    ($($name:ident $place:tt),+) => {
+    ($($name:ident $field:tt),+) => {
         impl<$($name: Slices),+> Slices for ($($name,)+) {
             type Piece = ($($name::Piece,)+);
 
@@ -245,13 +245,13 @@ macro_rules! tuples {
             }
 
             fn split(self, pieces: usize) -> (Self, Self) {
-                let parts = ($(self.$place.split(pieces),)+);
-                (($(parts.$place.0,)+), ($(parts.$place.1,)+))
+                let parts = ($(self.$field.split(pieces),)+);
+                (($(parts.$field.0,)+), ($(parts.$field.1,)+))
             }
 
             #[inline(always)]
             fn next(&mut self) -> Option<Self::Piece> {
-                Some(($(self.$place.next()?,)+))
+                Some(($(self.$field.next()?,)+))
             }
         }
     };

@@ -138,9 +138,9 @@ impl<const D: usize> Blocks<D> {
         let mut key = Key { layer, at: [0; D] };
         let mut local = 0;
         for d in 0..D {
-            let (block, place) = split_node(index[d]);
+            let (block, within) = split_node(index[d]);
             key.at[d] = i32::try_from(block).ok()?;
-            local = local * EDGE + place;
+            local = local * EDGE + within;
         }
         self.find(&key).map(|slot| self.place[slot as usize] as usize * block_nodes(D) + local)
     }
@@ -185,9 +185,9 @@ impl<const D: usize> Blocks<D> {
     /// First half of a change: finds out which blocks shall be active, those that the tiles of the
     /// owners reach, and with `keep` the present ones too. An owner may be named more than once. Gives
     /// the number of slots that the second half needs.
-    pub fn plan(&mut self, owners: &[Key<D>], keep: bool) -> Result<usize> {
+    pub fn plan(&mut self, owners: &[Key<D>], keep_active: bool) -> Result<usize> {
         self.reach(owners)?;
-        if keep {
+        if keep_active {
             self.order.iter().for_each(|slot| self.reached[*slot as usize] = true);
         }
         self.removed = self.order.iter().filter(|slot| !self.reached[**slot as usize]).count();
@@ -366,8 +366,8 @@ mod tests {
     }
 
     /// Both halves of a change, and the compaction.
-    fn set_owners<const D: usize>(grid: &mut Blocks<D>, owners: &[Key<D>], keep: bool) {
-        let slots = grid.plan(owners, keep).expect("memory");
+    fn set_owners<const D: usize>(grid: &mut Blocks<D>, owners: &[Key<D>], keep_active: bool) {
+        let slots = grid.plan(owners, keep_active).expect("memory");
         grid.carry_out(slots).expect("memory");
         if let Some(small) = grid.compacted().expect("memory") {
             *grid = small;

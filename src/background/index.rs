@@ -39,12 +39,12 @@ impl Index {
     #[inline]
     pub fn find<const D: usize>(&self, key: &Key<D>, keys: &[Key<D>]) -> Option<u32> {
         let mask = self.table.len().checked_sub(1)?;
-        let mut place = home(key) & mask;
+        let mut bucket = home(key) & mask;
         loop {
-            match self.table[place] {
+            match self.table[bucket] {
                 NONE => return None,
                 position if keys[position as usize] == *key => return Some(position),
-                _ => place = (place + 1) & mask,
+                _ => bucket = (bucket + 1) & mask,
             }
         }
     }
@@ -52,11 +52,11 @@ impl Index {
     /// Adds the key at a position of the list; there is room, and the key is not in the table.
     pub fn insert<const D: usize>(&mut self, position: u32, keys: &[Key<D>]) {
         let mask = self.table.len() - 1;
-        let mut place = home(&keys[position as usize]) & mask;
-        while self.table[place] != NONE {
-            place = (place + 1) & mask;
+        let mut bucket = home(&keys[position as usize]) & mask;
+        while self.table[bucket] != NONE {
+            bucket = (bucket + 1) & mask;
         }
-        self.table[place] = position;
+        self.table[bucket] = position;
     }
 
     /// Takes the key at a position of the list out, and moves those up that stood behind it for lack of their own place.
@@ -66,17 +66,17 @@ impl Index {
         while self.table[hole] != position {
             hole = (hole + 1) & mask;
         }
-        let mut place = hole;
+        let mut bucket = hole;
         loop {
-            place = (place + 1) & mask;
-            let other = self.table[place];
+            bucket = (bucket + 1) & mask;
+            let other = self.table[bucket];
             if other == NONE {
                 break;
             }
-            let from_home = place.wrapping_sub(home(&keys[other as usize])) & mask;
-            if from_home >= place.wrapping_sub(hole) & mask {
+            let from_home = bucket.wrapping_sub(home(&keys[other as usize])) & mask;
+            if from_home >= bucket.wrapping_sub(hole) & mask {
                 self.table[hole] = other;
-                hole = place;
+                hole = bucket;
             }
         }
         self.table[hole] = NONE;

@@ -58,7 +58,7 @@ mod tests {
     /// The Morton code of coordinates below 8, bit by bit, the first axis highest.
     fn interleaved(key: Key<3>) -> i32 {
         let bits = |bit: i32| (0..3).fold(0, |code, d| 2 * code + (key.at[d] >> bit & 1));
-        (0..3).fold(0, |code, place| 8 * code + bits(2 - place))
+        (0..3).fold(0, |code, bit| 8 * code + bits(2 - bit))
     }
 
     #[test]

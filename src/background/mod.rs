@@ -79,9 +79,9 @@ impl<const D: usize> Background<D> {
     ///
     /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were or
     /// as they shall be; the call can be repeated.
-    pub fn set_owners(&mut self, owners: &[Key<D>], keep: bool) -> Result<()> {
+    pub fn set_owners(&mut self, owners: &[Key<D>], keep_active: bool) -> Result<()> {
         let Self { blocks, nodes, .. } = self;
-        let slots = blocks.plan(owners, keep)?;
+        let slots = blocks.plan(owners, keep_active)?;
         nodes.reserve(slots * block_nodes(D))?;
         blocks.carry_out(slots)?;
         nodes.resize(slots * block_nodes(D));

@@ -65,9 +65,9 @@ impl Tiles {
         place: &[u32],
         dimension: usize,
     ) -> Result<()> {
-        let pieces: usize =
+        let count: usize =
             runs.clone().map(|r| (r.end - r.first).div_ceil(TILE_PARTICLES) as usize).sum();
-        refill(&mut self.runs, pieces, WHAT)?;
+        refill(&mut self.runs, count, WHAT)?;
         for mut run in runs {
             while run.end - run.first > TILE_PARTICLES {
                 self.runs.push(Run { end: run.first + TILE_PARTICLES, ..run });
@@ -79,8 +79,8 @@ impl Tiles {
         if !self.runs.is_sorted_by_key(order) {
             self.runs.sort_unstable_by_key(order);
         }
-        refill(&mut self.tiles, pieces, WHAT)?;
-        refill(&mut self.start, pieces + 1, WHAT)?;
+        refill(&mut self.tiles, count, WHAT)?;
+        refill(&mut self.start, count + 1, WHAT)?;
         refill(&mut self.of_block, place.len(), WHAT)?;
         self.of_block.resize(place.len(), (0, 0));
         let (mut block, mut load, mut all) = (NONE, 0, 0);

@@ -15,7 +15,7 @@ pub use body::{Body, Sizes};
 pub use chunk::{CHUNK, ChunkMut, Motion};
 pub use dilations::Dilations;
 pub use fields::{Carrier, Columns, FieldInfo, Layout, Rule};
-pub use moves::{Mark, Moves, Part, Segment, Span, in_order};
+pub use moves::{BodyMoves, Moves, MovesEnd, RunStart, Segment, in_order};
 
 use crate::error::Result;
 use crate::memory::{Aligned, reserve, stride_of};
@@ -163,7 +163,7 @@ impl Particles {
     }
 
     /// Carries out moves of particles; several threads move a column each.
-    pub fn rearrange(&mut self, moves: Part<'_>, team: &Team) {
+    pub fn rearrange(&mut self, moves: BodyMoves<'_>, team: &Team) {
         let (stride, single) = (self.stride, moves.from.len().max(1));
         if moves.from.is_empty() && moves.segments.is_empty() {
             return;
@@ -173,8 +173,8 @@ impl Particles {
         let columns = data.len() / stride;
         let at_a_time = if team.is_together() { columns.min(stride / single) } else { 1 };
         let group = stride * columns.div_ceil(at_a_time);
-        let pieces = (Cut(&mut data[..], group), Cut(&mut scratch[..], single));
-        team.for_each_piece(pieces, 1, |_, (columns, scratch)| {
+        let slices = (Cut(&mut data[..], group), Cut(&mut scratch[..], single));
+        team.for_each_piece(slices, 1, |_, (columns, scratch)| {
             for column in columns.chunks_exact_mut(stride) {
                 move_all(column, scratch, moves, |x| x, |x| x);
             }
@@ -195,12 +195,12 @@ impl Particles {
 fn move_all<T: Copy>(
     column: &mut [T],
     scratch: &mut [f64],
-    Part { from, to, segments }: Part<'_>,
+    BodyMoves { from, to, segments }: BodyMoves<'_>,
     pack: impl Fn(T) -> f64,
     unpack: impl Fn(f64) -> T,
 ) {
-    for (piece, from) in scratch.iter_mut().zip(from) {
-        *piece = pack(column[*from as usize]);
+    for (mover, from) in scratch.iter_mut().zip(from) {
+        *mover = pack(column[*from as usize]);
     }
     for (s, Segment { from, to, len }) in segments.iter().enumerate() {
         if let Some(next) = segments.get(s + AHEAD) {
@@ -211,7 +211,7 @@ fn move_all<T: Copy>(
         }
         column.copy_within(*from as usize..(from + len) as usize, *to as usize);
     }
-    for (to, piece) in to.iter().zip(scratch) {
-        column[*to as usize] = unpack(*piece);
+    for (to, mover) in to.iter().zip(scratch) {
+        column[*to as usize] = unpack(*mover);
     }
 }

@@ -30,14 +30,14 @@ pub struct Moves {
 
 /// Lengths of the lists of moves.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Mark {
+pub struct MovesEnd {
     single: usize,
     segments: usize,
 }
 
 /// A part of the lists of moves: those of one body.
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
+pub struct BodyMoves<'a> {
     /// Places of the single particles before.
     pub from: &'a [u32],
     /// Their places after.
@@ -55,14 +55,14 @@ impl Moves {
     }
 
     /// Where the lists end now.
-    pub fn mark(&self) -> Mark {
-        Mark { single: self.from.len(), segments: self.segments.len() }
+    pub fn end(&self) -> MovesEnd {
+        MovesEnd { single: self.from.len(), segments: self.segments.len() }
     }
 
     /// The moves between two ends.
-    pub fn between(&self, start: Mark, end: Mark) -> Part<'_> {
+    pub fn between(&self, start: MovesEnd, end: MovesEnd) -> BodyMoves<'_> {
         let single = start.single..end.single;
-        Part {
+        BodyMoves {
             from: &self.from[single.clone()],
             to: &self.to[single],
             segments: &self.segments[start.segments..end.segments],
@@ -122,13 +122,13 @@ impl Moves {
     }
 
     /// Carries neighbours into a room as far as it reaches, and the rest of them into holes.
-    fn carry(&mut self, piece: Range<u32>, room: &mut Range<u32>, holes: &mut &[u32]) {
-        let whole = piece.len().min(room.len()) as u32;
+    fn carry(&mut self, range: Range<u32>, room: &mut Range<u32>, holes: &mut &[u32]) {
+        let whole = range.len().min(room.len()) as u32;
         if whole > 0 {
-            self.segments.push(Segment { from: piece.start, to: room.start, len: whole });
+            self.segments.push(Segment { from: range.start, to: room.start, len: whole });
             room.start += whole;
         }
-        let rest = piece.start + whole..piece.end;
+        let rest = range.start + whole..range.end;
         let (taken, left) = holes.split_at(rest.len());
         *holes = left;
         self.segments.extend(rest.zip(taken).map(|(from, to)| Segment { from, to: *to, len: 1 }));
@@ -145,11 +145,11 @@ fn inside(list: &[u32], range: Range<u32>) -> &[u32] {
 /// An old and a new row of the same runs; each list holds where the runs start, and at last where the row ends. Says in which order the
 /// runs can be refilled, so that none gets particles onto places of another that still has to move its own: where ends of runs
 /// in a row move up, from the last of these runs to the first, elsewhere from the first to the last.
-pub fn in_order(spans: &[Span], mut refill: impl FnMut(usize)) {
+pub fn in_order(starts: &[RunStart], mut refill: impl FnMut(usize)) {
     let mut first = 0;
-    while first + 1 < spans.len() {
+    while first + 1 < starts.len() {
         let mut last = first;
-        while spans[last + 1].new > spans[last + 1].old {
+        while starts[last + 1].new > starts[last + 1].old {
             last += 1;
         }
         (first..=last).rev().for_each(&mut refill);
@@ -159,7 +159,7 @@ pub fn in_order(spans: &[Span], mut refill: impl FnMut(usize)) {
 
 /// Where a run starts.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
+pub struct RunStart {
     /// Its first place before; that of the next run if it was empty.
     pub old: u32,
     /// Its first place after; that of the next run if it is empty.
@@ -176,8 +176,8 @@ mod tests {
         for Segment { from, to, len } in &moves.segments {
             row.copy_within(*from as usize..(from + len) as usize, *to as usize);
         }
-        for (to, piece) in moves.to.iter().zip(single) {
-            row[*to as usize] = piece;
+        for (to, mover) in moves.to.iter().zip(single) {
+            row[*to as usize] = mover;
         }
         row
     }
@@ -185,21 +185,21 @@ mod tests {
     /// The moves between rows of runs that follow each other as `runs` does. `target` names the run in which each particle belongs;
     /// of the runs `old` tells the lengths before.
     fn regroup(runs: &[u8], old: &[u32], target: &[u8]) -> Moves {
-        let (mut spans, mut at) = (Vec::new(), Span { old: 0, new: 0 });
+        let (mut starts, mut at) = (Vec::new(), RunStart { old: 0, new: 0 });
         for (name, old) in runs.iter().zip(old) {
-            spans.push(at);
+            starts.push(at);
             at.old += old;
             at.new += target.iter().filter(|t| *t == name).count() as u32;
         }
-        spans.push(at);
+        starts.push(at);
         let mut moves = Moves::default();
-        in_order(&spans, |r| {
-            let old = spans[r].old..spans[r + 1].old;
+        in_order(&starts, |r| {
+            let old = starts[r].old..starts[r + 1].old;
             let is_leaver = |k: &u32| target[*k as usize] != runs[r];
             let leavers: Vec<u32> = old.clone().filter(is_leaver).collect();
             let others = (0..target.len() as u32).filter(|k| !old.contains(k));
             let arrivals: Vec<u32> = others.filter(|k| !is_leaver(k)).collect();
-            moves.refill(old.clone(), spans[r].new..spans[r + 1].new, &leavers, &arrivals);
+            moves.refill(old.clone(), starts[r].new..starts[r + 1].new, &leavers, &arrivals);
         });
         moves
     }

@@ -98,10 +98,10 @@ impl<const N: usize, const D: usize> Stencil<f64, N, D> {
     /// Visits the nodes in storage order: index, weight, gradient of the weight [1/h].
     pub fn nodes(&self, mut visit: impl FnMut([i64; D], f64, [f64; D])) {
         for flat in 0..N.pow(D as u32) {
-            let place = |d: usize| flat / N.pow((D - 1 - d) as u32) % N;
-            let index = std::array::from_fn(|d| self.axes[d].first as i64 + place(d) as i64);
-            let w = |d: usize| self.axes[d].w[place(d)];
-            let slope = |d: usize, e: usize| if d == e { self.axes[e].dw[place(e)] } else { w(e) };
+            let along = |d: usize| flat / N.pow((D - 1 - d) as u32) % N;
+            let index = std::array::from_fn(|d| self.axes[d].first as i64 + along(d) as i64);
+            let w = |d: usize| self.axes[d].w[along(d)];
+            let slope = |d: usize, e: usize| if d == e { self.axes[e].dw[along(e)] } else { w(e) };
             let dw = std::array::from_fn(|d| (0..D).map(|e| slope(d, e)).product());
             visit(index, (0..D).map(w).product(), dw); // [SHP-7]
         }

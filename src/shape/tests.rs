@@ -56,11 +56,11 @@ fn next_to_walls_modified_weights_reproduce_linear_fields_and_are_not_negative()
     for n in 0..=900 {
         let xi = (0.01 * f64::from(n)).min(9.0 - 1e-9);
         for axis in [0, 1, 2] {
-            let mut place = [4.3; 3];
-            place[axis] = xi;
-            assert!(defects::<3, Modified<QuadraticBspline>>(place, 0.0) <= 1e-13);
-            assert!(defects::<4, Modified<CubicBspline>>(place, 0.0) <= 1e-13);
-            assert!(defects::<3, Modified<Gimp>>(place, 0.3) <= 1e-13);
+            let mut point = [4.3; 3];
+            point[axis] = xi;
+            assert!(defects::<3, Modified<QuadraticBspline>>(point, 0.0) <= 1e-13);
+            assert!(defects::<4, Modified<CubicBspline>>(point, 0.0) <= 1e-13);
+            assert!(defects::<3, Modified<Gimp>>(point, 0.3) <= 1e-13);
         }
         let weights = Modified::<CubicBspline>::axis(at::<4, Modified<CubicBspline>>(xi, 0.0));
         for (k, w) in weights.w.into_iter().enumerate() {

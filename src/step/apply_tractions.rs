@@ -21,8 +21,8 @@ pub fn apply_tractions<const D: usize>(
 ) {
     let Background { space, blocks, nodes, .. } = background;
     let mut spread = |layer: u32, x: [f64; D], force: [f64; 3]| {
-        let place = (layer, at_point(space, x, [0.0; D]));
-        spread(method, blocks, nodes, place, force)
+        let point = (layer, at_point(space, x, [0.0; D]));
+        spread(method, blocks, nodes, point, force)
     };
     for entry in tractions.iter_mut() {
         let Loaded { load, surface, applied } = &mut entry.condition;
@@ -34,9 +34,9 @@ pub fn apply_tractions<const D: usize>(
         let traction = load.traction.at(time);
         surface.look_up(&particles.id);
         let faces = surface.areas.iter().zip(&surface.edges);
-        for (place, (area, edge)) in surface.places.iter().zip(faces) {
-            let center = particles.get::<D>(layout.position, *place);
-            let [volume] = particles.get::<1>(layout.volume, *place);
+        for (k, (area, edge)) in surface.places.iter().zip(faces) {
+            let center = particles.get::<D>(layout.position, *k);
+            let [volume] = particles.get::<1>(layout.volume, *k);
             let mut face = center;
             let section = if method.options.axisymmetric { edge * center[0] } else { *edge };
             face[load.axis] += 0.5 * f64::from(load.side) * volume / section; // [CND-4]

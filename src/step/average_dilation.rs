@@ -9,7 +9,7 @@
 
 use super::grid_to_particles::Gather;
 use super::parts::Method;
-use super::pass::{Pass, Piece, Then};
+use super::pass::{ChunkWork, Pass, Then};
 use crate::background::{Background, Blocks, EDGE, Key, Run, Space};
 use crate::parallel::{Cut, Divide, Team};
 use crate::particles::{Body, Dilations};
@@ -55,8 +55,8 @@ pub fn average_dilation<const D: usize>(
 }
 
 /// Turns the velocity gradients of a chunk into those of F-bar.
-pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_>, axisymmetric: bool) {
-    let Piece { chunk, scratch, .. } = piece;
+pub fn share_dilation<const D: usize>(work: &mut ChunkWork<'_, '_>, axisymmetric: bool) {
+    let ChunkWork { chunk, scratch, .. } = work;
     let Some(dilation) = chunk.layout.dilation else {
         return;
     };
@@ -71,8 +71,8 @@ pub fn share_dilation<const D: usize>(piece: &mut Piece<'_, '_>, axisymmetric: b
 }
 
 /// Stores the trace of the velocity gradient of every particle of a chunk.
-pub fn store_rates(piece: &mut Piece<'_, '_>) {
-    let Piece { chunk, scratch, .. } = piece;
+pub fn store_rates(work: &mut ChunkWork<'_, '_>) {
+    let ChunkWork { chunk, scratch, .. } = work;
     let Some(dilation) = chunk.layout.dilation else {
         return;
     };
@@ -86,8 +86,8 @@ pub fn store_rates(piece: &mut Piece<'_, '_>) {
 fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize {
     let xi = space.between_walls(x);
     (0..D).fold(0, |patch, d| {
-        let place = xi[d].floor() - f64::from(key.at[d]) * EDGE as f64;
-        patch * REACH + place.clamp(0.0, EDGE as f64) as usize
+        let cell = xi[d].floor() - f64::from(key.at[d]) * EDGE as f64;
+        patch * REACH + cell.clamp(0.0, EDGE as f64) as usize
     })
 }
 
@@ -110,8 +110,8 @@ impl Patches {
             self.runs[run.block as usize] = n as u32;
         }
         let particles = &*particles;
-        let pieces = (Cut(runs, 1), Cut(&mut self.sums[..], reached));
-        team.for_each_piece(pieces, FEW, |_, (run, sums)| {
+        let slices = (Cut(runs, 1), Cut(&mut self.sums[..], reached));
+        team.for_each_piece(slices, FEW, |_, (run, sums)| {
             let run = run[0];
             let key = keys[run.block as usize];
             for k in run.first as usize..run.end as usize {
@@ -179,7 +179,7 @@ impl<const D: usize> Whole<'_, D> {
 
     /// The sums of a patch over all runs that reach it, from lower blocks to higher ones, so that all of them get the same.
     fn total(&self, slot: u32, key: Key<D>, patch: usize) -> [f64; 2] {
-        let place: [usize; D] =
+        let index: [usize; D] =
             std::array::from_fn(|d| patch / REACH.pow((D - 1 - d) as u32) % REACH);
         let mut total = [0.0; 2];
         for choice in 0..1 << D {
@@ -189,7 +189,7 @@ impl<const D: usize> Whole<'_, D> {
             let mut exists = true;
             for d in 0..D {
                 let upper = choice >> d & 1 == 1;
-                let (step, at) = match (place[d], upper) {
+                let (step, at) = match (index[d], upper) {
                     (0, false) => (-1, EDGE),
                     (EDGE, true) => (1, 0),
                     (0, true) => (0, 0),

@@ -2,7 +2,7 @@
 //!
 //! The work of the step goes into the strain energy, U += V ½ (σ0 + σ1) : Δε, unless the model gives its own energy.
 
-use super::pass::{Moment, Piece};
+use super::pass::{ChunkWork, Moment};
 use super::time_step::Limits;
 use super::update_stress::{Answer, Failure, Outcome, fault};
 use crate::error::Status;
@@ -12,16 +12,16 @@ use crate::simd::{Isa, Kernel, LANES, Vector};
 
 /// Takes over what stands in scratch: volume, stress, energy, sizes, deformation gradient and state of a chunk.
 pub fn commit<const D: usize>(
-    piece: &mut Piece<'_, '_>,
+    work: &mut ChunkWork<'_, '_>,
     isa: Isa,
     moment: Moment,
     answer: Answer,
 ) -> Outcome {
-    let (speed, finite) = isa.dispatch(Check::<D>(piece));
+    let (speed, finite) = isa.dispatch(Check::<D>(work));
     if !finite {
-        return Outcome::failed(not_finite::<D>(piece, moment));
+        return Outcome::failed(not_finite::<D>(work, moment));
     }
-    let Piece { chunk, scratch, .. } = piece;
+    let ChunkWork { chunk, scratch, .. } = work;
     for (columns, from) in ends(&chunk.layout, scratch) {
         for c in 0..columns.count {
             let to = chunk.column_mut(columns.first + c);
@@ -80,13 +80,13 @@ impl<V: Vector> Finite<V> {
 
 /// Finds the energy at the end. Gives the largest c + |v|, and whether everything is finite and no wave speed
 /// negative.
-struct Check<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>);
+struct Check<'p, 'c, 's, const D: usize>(&'p mut ChunkWork<'c, 's>);
 
 impl<const D: usize> Kernel for Check<'_, '_, '_, D> {
     type Output = (f64, bool);
     #[inline(always)]
     fn run<V: Vector>(self) -> (f64, bool) {
-        let Self(Piece { chunk, scratch: s, .. }) = self;
+        let Self(ChunkWork { chunk, scratch: s, .. }) = self;
         let (layout, stride, n) = (chunk.layout, s.stride, chunk.len);
         let velocity: [&[f64]; D] = chunk.columns(layout.velocity);
         let energy0 = chunk.column(layout.strain_energy);
@@ -140,8 +140,8 @@ impl<const D: usize> Kernel for Check<'_, '_, '_, D> {
     }
 }
 
-fn not_finite<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Box<Failure> {
-    let (chunk, s) = (&piece.chunk, &piece.scratch);
+fn not_finite<const D: usize>(work: &ChunkWork<'_, '_>, moment: Moment) -> Box<Failure> {
+    let (chunk, s) = (&work.chunk, &work.scratch);
     let given = |output: &[f64], k: usize| output.get(k).is_none_or(|value| value.is_finite());
     let ends = ends(&chunk.layout, s);
     let good = |k: &usize| {
@@ -157,7 +157,7 @@ fn not_finite<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Box<Fail
     };
     let k = (0..chunk.len).find(|k| !good(k));
     fault::<D>(
-        piece,
+        work,
         k.unwrap_or(0),
         moment,
         Status::NonFinite,

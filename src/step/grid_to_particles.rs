@@ -9,7 +9,7 @@
 use std::marker::PhantomData;
 
 use super::parts::Method;
-use super::pass::{Copied, Pass, Piece};
+use super::pass::{ChunkWork, Copied, Pass};
 use crate::background::nodes::{FIRST, SECOND};
 use crate::background::tiles::{TileNode, load_tile};
 use crate::background::{Background, Blocks, EDGE, Key, Record, Run};
@@ -101,13 +101,13 @@ impl<'a, const D: usize> GatherJob<'a, D> {
 /// Updates the particles of a chunk from the grid and leaves their velocity gradients in the chunk's scratch;
 /// `runs` are those of the body.
 pub fn gather<S: ShapeFunction<N>, const N: usize, const D: usize>(
-    piece: &mut Piece<'_, '_>,
+    work: &mut ChunkWork<'_, '_>,
     (background, runs): (&Background<D>, &[Run]),
     copied: &mut Copied<'_>,
     method: &Method<D>,
     pass: &Pass,
 ) {
-    let Piece { chunk, scratch, .. } = piece;
+    let ChunkWork { chunk, scratch, .. } = work;
     if D == 2 {
         for c in [2, 5, 6, 7, 8] {
             scratch.velocity_gradient[c * scratch.stride..][..scratch.stride].fill(0.0);
@@ -165,12 +165,12 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel
                 for k in (start..start + count).step_by(LANES) {
                     let received = taken.received(job, (k - start) / LANES);
                     let end = (start + count).min(k + LANES);
-                    let kept = (&mut motion, &mut gradient);
+                    let out = (&mut motion, &mut gradient);
                     marks[k / LANES] = if end == k + LANES {
                         // of known length
-                        keep::<V, S, N, D>(job, key, &received, kept, (k, k + LANES))
+                        store::<V, S, N, D>(job, key, &received, out, (k, k + LANES))
                     } else {
-                        keep::<V, S, N, D>(job, key, &received, kept, (k, end))
+                        store::<V, S, N, D>(job, key, &received, out, (k, end))
                     };
                 }
             }
@@ -291,7 +291,7 @@ impl<V: Vector, const D: usize> Taken<V, D> {
 
 /// Updates the particles of a range from what they took. Gives a bit for each that left its block.
 #[inline(always)]
-fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+fn store<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     key: Key<D>,
     received: &Received<V, D>,
@@ -300,7 +300,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
 ) -> u8 {
     let old = each!(a in D => V::load(&motion.position[a][k..end]));
     if job.what.velocity() {
-        keep_velocity::<V, S, N, D>(job, old, received, motion, (k, end));
+        store_velocity::<V, S, N, D>(job, old, received, motion, (k, end));
     }
     if job.what.gradient() {
         for a in 0..D {
@@ -335,7 +335,7 @@ fn keep<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
 /// Keeps the velocities, and affine matrices, of eight particles at `x`. (Each scheme stores for itself: a choice between values in memory
 /// would keep the compiler from holding them in registers.)
 #[inline(always)]
-fn keep_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
+fn store_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
     x: [V; D],
     received: &Received<V, D>,
@@ -393,10 +393,10 @@ fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     let xi = if S::MODIFIED { space.between_walls(x) } else { space.to_units(x) };
     let mut inside = u8::MAX;
     for d in 0..D {
-        let place = xi[d] - V::splat(space.first_offset);
+        let start = xi[d] - V::splat(space.first_offset);
         let lowest = f64::from(key.at[d]) * EDGE as f64;
         let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
-        inside &= !place.less_than(low) & place.less_than(high);
+        inside &= !start.less_than(low) & start.less_than(high);
     }
     !inside & (u8::MAX >> (LANES - count))
 }

@@ -21,7 +21,7 @@ use crate::background::{Background, Blocks, EDGE, GridPolicy, Key, Run, Space};
 use crate::error::{Error, Place, Result, Status};
 use crate::memory::{refill, reserve};
 use crate::parallel::{Cut, Team};
-use crate::particles::{Body, Mark, Moves};
+use crate::particles::{Body, Moves, MovesEnd};
 use crate::simd::Real;
 
 use full::{Sorter, plan_sort};
@@ -51,7 +51,7 @@ pub struct Plan<const D: usize> {
     /// Moves of all bodies, with places counted from the first particle of the body.
     moves: Moves,
     /// For each body the ends of its runs and of its moves.
-    ends: Vec<(usize, Mark)>,
+    ends: Vec<(usize, MovesEnd)>,
     /// Whether a run is in a block that had none of this body, or a block lost its run.
     blocks_change: bool,
 }
@@ -80,7 +80,7 @@ impl<const D: usize> Plan<D> {
 
     /// Ends the body in hand.
     fn end_body(&mut self) {
-        self.ends.push((self.runs.len(), self.moves.mark()));
+        self.ends.push((self.runs.len(), self.moves.end()));
     }
 }
 
@@ -132,7 +132,7 @@ fn carry_out<const D: usize>(
             run.block = background.blocks.find(key).expect("owners are active blocks");
         }
     }
-    let (mut run, mut done) = (0, Mark::default());
+    let (mut run, mut done) = (0, MovesEnd::default());
     for (body, (end, last)) in bodies.iter_mut().zip(&plan.ends) {
         refill(&mut body.runs, end - run, SORTING)?;
         body.runs.extend_from_slice(&plan.runs[run..*end]);
@@ -152,7 +152,7 @@ struct Near<'a, const D: usize> {
 
 /// Block of a particle and the number of its cell in the block; None if it is too far away or not finite.
 #[inline(always)]
-fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32)> {
+fn block_and_cell<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32)> {
     let xi = space.between_walls(x);
     let mut at = [0; D];
     let mut cell = 0;
@@ -170,9 +170,13 @@ fn place<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32
 
 /// Block and cell of particle k of a body, or the error that it is outside the grid.
 #[inline(always)]
-fn place_inside<const D: usize>(near: Near<'_, D>, body: &Body, k: usize) -> Result<(Key<D>, u32)> {
+fn block_and_cell_inside<const D: usize>(
+    near: Near<'_, D>,
+    body: &Body,
+    k: usize,
+) -> Result<(Key<D>, u32)> {
     let x = body.particles.get::<D>(body.particles.layout.position, k);
-    match place(near.space, x) {
+    match block_and_cell(near.space, x) {
         Some((at, cell)) if near.options.holds(&x) => Ok((Key { layer: body.layer, at }, cell)),
         _ => Err(outside(near.options, body, k, x)),
     }

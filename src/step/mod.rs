@@ -59,7 +59,7 @@ use locate::{check_radii, locate};
 use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
 use parts::Parts;
 use pass::{Moment, Pass, Then};
-use retry::keep_start;
+use retry::save_start;
 use update_grid::update_grid;
 use update_stress::Outcome;
 
@@ -67,7 +67,7 @@ use update_stress::Outcome;
 pub fn step<const D: usize>(world: &mut Parts<D>, dt: f64) -> Result<Outcome> {
     sort(world)?;
     if world.method.options.retries > 0 {
-        keep_start(&world.bodies, &mut world.conditions, &mut world.buffers.start)?;
+        save_start(&world.bodies, &mut world.conditions, &mut world.buffers.start)?;
     }
     world.hook(HookPoint::Start, dt);
     let outcome = match world.method.options.order {

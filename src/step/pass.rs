@@ -64,7 +64,7 @@ pub enum ChunkStage {
 pub type Stopwatch = dyn Fn(ChunkStage) + Send + Sync;
 
 /// A chunk of a body's particles in a pass.
-pub struct Piece<'c, 's> {
+pub struct ChunkWork<'c, 's> {
     /// The particles.
     pub chunk: &'s mut ChunkMut<'c>,
     /// What the stages hand to each other.
@@ -112,10 +112,10 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
                 let mut copied = Copied { tile, block: None };
                 task.for_each_chunk(|chunk| {
                     let scratch = points.scratch(material, chunk.len, carried);
-                    let piece = &mut Piece { chunk, scratch, body: *id, ids, material };
+                    let work = &mut ChunkWork { chunk, scratch, body: *id, ids, material };
                     method.lap(ChunkStage::Start);
-                    gather::<S, N, D>(piece, (background, runs), &mut copied, method, pass);
-                    of_task.add(after_gather::<D>(piece, method, pass));
+                    gather::<S, N, D>(work, (background, runs), &mut copied, method, pass);
+                    of_task.add(after_gather::<D>(work, method, pass));
                 });
                 of_task
             })
@@ -127,7 +127,7 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
 
 /// The stages of a pass that do not know the shape function.
 fn after_gather<const D: usize>(
-    piece: &mut Piece<'_, '_>,
+    work: &mut ChunkWork<'_, '_>,
     method: &Method<D>,
     pass: &Pass,
 ) -> Outcome {
@@ -135,13 +135,13 @@ fn after_gather<const D: usize>(
     match pass.then {
         Then::Nothing => Outcome::default(),
         Then::Rates => {
-            store_rates(piece);
+            store_rates(work);
             Outcome::default()
         }
         Then::Stress(moment) => {
-            share_dilation::<D>(piece, method.options.axisymmetric);
-            let outcome = match evaluate::<D>(piece, method, moment) {
-                Ok(answer) => commit::<D>(piece, method.isa, moment, answer),
+            share_dilation::<D>(work, method.options.axisymmetric);
+            let outcome = match evaluate::<D>(work, method, moment) {
+                Ok(answer) => commit::<D>(work, method.isa, moment, answer),
                 Err(failure) => Outcome::failed(failure),
             };
             method.lap(ChunkStage::Stressed);
@@ -152,13 +152,13 @@ fn after_gather<const D: usize>(
 
 /// Strain and stress of a chunk over a moment, in scratch: what an implicit solver calls as often as it likes.
 pub fn evaluate<const D: usize>(
-    piece: &mut Piece<'_, '_>,
+    work: &mut ChunkWork<'_, '_>,
     method: &Method<D>,
     moment: Moment,
 ) -> Result<Answer, Box<Failure>> {
-    update_strain::<D>(piece, method, moment.dt);
+    update_strain::<D>(work, method, moment.dt);
     method.lap(ChunkStage::Strained);
-    update_stress::<D>(piece, moment)
+    update_stress::<D>(work, moment)
 }
 
 impl<const D: usize> Method<D> {

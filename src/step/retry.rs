@@ -17,7 +17,7 @@ pub struct Start {
 }
 
 /// Copies the columns of all particles, and the forces of conditions.
-pub fn keep_start(bodies: &[Body], conditions: &mut Conditions, start: &mut Start) -> Result<()> {
+pub fn save_start(bodies: &[Body], conditions: &mut Conditions, start: &mut Start) -> Result<()> {
     start.columns.resize_with(bodies.len(), Vec::new);
     for (body, columns) in bodies.iter().zip(&mut start.columns) {
         body.particles.copy_columns(columns)?;

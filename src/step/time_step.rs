@@ -134,8 +134,8 @@ fn limits_of_chunk<const D: usize>(
 }
 
 /// A material that gives no wave speed at a particle, or at some of a body.
-fn refused(body: &Body, place: Option<usize>, why: &str) -> Error {
-    let particle = place.map(|k| body.particles.id[k]);
+fn refused(body: &Body, k: Option<usize>, why: &str) -> Error {
+    let particle = k.map(|k| body.particles.id[k]);
     let model = body.material.model().name;
     let at = particle.map_or(String::new(), |id| format!("particle {id} of "));
     let text = format!(

@@ -4,23 +4,23 @@
 //! diagonal of U alone, unlike that of F. How it compares with other choices: W. M. Coombs, C. E. Augarde, A. J. Brennan et al., Comput. Methods
 //! Appl. Mech. Engrg. 358 (2020) 112622, doi:10.1016/j.cma.2019.112622.
 
-use super::pass::Piece;
+use super::pass::ChunkWork;
 use super::update_strain::{deformation_gradient, deformed};
 use crate::simd::{Isa, Kernel, LANES, Vector};
 use crate::tensor::stretch_diagonal;
 
 /// Finds the edges of the particles of a chunk at the end of the step, of which the deformation gradients are known.
-pub fn update_domain<const D: usize>(piece: &mut Piece<'_, '_>, isa: Isa) {
-    isa.dispatch(Domain::<D>(piece));
+pub fn update_domain<const D: usize>(work: &mut ChunkWork<'_, '_>, isa: Isa) {
+    isa.dispatch(Domain::<D>(work));
 }
 
-struct Domain<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>);
+struct Domain<'p, 'c, 's, const D: usize>(&'p mut ChunkWork<'c, 's>);
 
 impl<const D: usize> Kernel for Domain<'_, '_, '_, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(Piece { chunk, scratch, .. }) = self;
+        let Self(ChunkWork { chunk, scratch, .. }) = self;
         let first = chunk.layout.size.map_or(0, |size| size.first);
         for k in (0..chunk.len).step_by(LANES) {
             let end = chunk.len.min(k + LANES);

@@ -7,7 +7,7 @@
 //! A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965) 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
 
 use super::parts::Method;
-use super::pass::Piece;
+use super::pass::ChunkWork;
 use super::update_domain::update_domain;
 use crate::material::scratch::Scratch;
 use crate::material::{Input, Kinematics, Rotation};
@@ -21,21 +21,21 @@ use crate::tensor::{
 };
 
 /// Fills the chunk's scratch with what the material takes, and with volume and deformation gradient at the end.
-pub fn update_strain<const D: usize>(piece: &mut Piece<'_, '_>, method: &Method<D>, dt: f64) {
+pub fn update_strain<const D: usize>(work: &mut ChunkWork<'_, '_>, method: &Method<D>, dt: f64) {
     let isa = method.isa;
-    copy_state(piece);
-    match piece.chunk.layout.deformation_gradient {
-        None => isa.dispatch(Strain::<D, false>(piece, dt)),
-        Some(_) => isa.dispatch(Strain::<D, true>(piece, dt)),
+    copy_state(work);
+    match work.chunk.layout.deformation_gradient {
+        None => isa.dispatch(Strain::<D, false>(work, dt)),
+        Some(_) => isa.dispatch(Strain::<D, true>(work, dt)),
     }
     let objective = |rotation| rotation == Rotation::Objective;
-    if piece.material.model().states.iter().any(|state| objective(state.rotation)) {
-        isa.dispatch(RotatedState::<D>(piece, dt));
+    if work.material.model().states.iter().any(|state| objective(state.rotation)) {
+        isa.dispatch(RotatedState::<D>(work, dt));
     }
     if method.options.shape == ShapeKind::ContiguousGimp {
-        update_domain::<D>(piece, isa);
+        update_domain::<D>(work, isa);
     }
-    let Piece { chunk, scratch, ids, .. } = piece;
+    let ChunkWork { chunk, scratch, ids, .. } = work;
     let ids = &ids[chunk.first..][..chunk.len];
     fill_inputs(scratch, &chunk.layout, |c| chunk.column(c), ids, method.options.spacing);
 }
@@ -98,14 +98,14 @@ fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
 }
 
 /// Strain increment, start stress and volume; `F`: for particles that carry the deformation gradient.
-struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut Piece<'c, 's>, f64);
+struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut ChunkWork<'c, 's>, f64);
 
 impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(piece, dt) = self;
-        let Piece { chunk, scratch, material, .. } = piece;
+        let Self(work, dt) = self;
+        let ChunkWork { chunk, scratch, material, .. } = work;
         let (layout, stride) = (chunk.layout, scratch.stride);
         let kinematics = material.model().kinematics;
         let stresses: [&[f64]; 6] = chunk.columns(layout.stress);
@@ -150,8 +150,8 @@ impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {
 }
 
 /// Copies the start state into the scratch.
-fn copy_state(piece: &mut Piece<'_, '_>) {
-    let Piece { chunk, scratch, .. } = piece;
+fn copy_state(work: &mut ChunkWork<'_, '_>) {
+    let ChunkWork { chunk, scratch, .. } = work;
     let (layout, stride, n) = (chunk.layout, scratch.stride, chunk.len);
     for c in 0..layout.state.count {
         scratch.state0[c * stride..][..n].copy_from_slice(chunk.column(layout.state.first + c));
@@ -159,13 +159,13 @@ fn copy_state(piece: &mut Piece<'_, '_>) {
 }
 
 /// Rotates the state variables that turn with the material, as the stress is.
-struct RotatedState<'p, 'c, 's, const D: usize>(&'p mut Piece<'c, 's>, f64);
+struct RotatedState<'p, 'c, 's, const D: usize>(&'p mut ChunkWork<'c, 's>, f64);
 
 impl<const D: usize> Kernel for RotatedState<'_, '_, '_, D> {
     type Output = ();
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Self(Piece { chunk, scratch, material, .. }, dt) = self;
+        let Self(ChunkWork { chunk, scratch, material, .. }, dt) = self;
         let stride = scratch.stride;
         let mut first = 0;
         for state in &material.model().states {

@@ -2,7 +2,7 @@
 
 use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP, LAHAR_POINT_UNRELIABLE};
 
-use super::pass::{Moment, Piece};
+use super::pass::{ChunkWork, Moment};
 use super::time_step::Limits;
 use crate::error::{Error, Place, Status};
 use crate::material::{Capsule, Occasion, StressBatch};
@@ -121,84 +121,84 @@ pub struct Answer {
 
 /// Lets the material answer for a chunk. Particles stay as they are.
 pub fn update_stress<const D: usize>(
-    piece: &mut Piece<'_, '_>,
+    work: &mut ChunkWork<'_, '_>,
     moment: Moment,
 ) -> Result<Answer, Box<Failure>> {
     let Moment { time, step, dt } = moment;
-    let mut batch = StressBatch { dt, time, step, ..piece.scratch.batch() };
-    if let Err(error) = piece.material.update(&mut batch) {
-        return Err(error.at(Place { body: Some(piece.body), ..Place::default() }).into());
+    let mut batch = StressBatch { dt, time, step, ..work.scratch.batch() };
+    if let Err(error) = work.material.update(&mut batch) {
+        return Err(error.at(Place { body: Some(work.body), ..Place::default() }).into());
     }
-    if let Some(failure) = failed_point::<D>(piece, moment) {
+    if let Some(failure) = failed_point::<D>(work, moment) {
         return Err(failure);
     }
-    let wish = smallest_wish(piece).map_err(|k| {
+    let wish = smallest_wish(work).map_err(|k| {
         let text = "gave a factor on the time step that is not above 0";
-        fault::<D>(piece, k, moment, Status::MaterialFailed, text)
+        fault::<D>(work, k, moment, Status::MaterialFailed, text)
     })?;
-    Ok(Answer { wish, unreliable: unreliable(piece) })
+    Ok(Answer { wish, unreliable: unreliable(work) })
 }
 
-fn failed_point<const D: usize>(piece: &Piece<'_, '_>, moment: Moment) -> Option<Box<Failure>> {
-    let status = &piece.scratch.status[..piece.chunk.len];
+fn failed_point<const D: usize>(work: &ChunkWork<'_, '_>, moment: Moment) -> Option<Box<Failure>> {
+    let status = &work.scratch.status[..work.chunk.len];
     if status.iter().fold(0, |worst, s| worst.max(*s)) < LAHAR_POINT_FAILED {
         return None;
     }
     let k = status.iter().position(|s| *s >= LAHAR_POINT_FAILED).unwrap_or(0);
-    Some(fault::<D>(piece, k, moment, Status::MaterialFailed, "could not update"))
+    Some(fault::<D>(work, k, moment, Status::MaterialFailed, "could not update"))
 }
 
-fn unreliable(piece: &Piece<'_, '_>) -> Option<Unreliable> {
-    let status = &piece.scratch.status[..piece.chunk.len];
+fn unreliable(work: &ChunkWork<'_, '_>) -> Option<Unreliable> {
+    let status = &work.scratch.status[..work.chunk.len];
     let points = status.iter().fold(0, |n, s| n + usize::from(*s == LAHAR_POINT_UNRELIABLE));
     if points == 0 {
         return None;
     }
     let k = status.iter().position(|s| *s == LAHAR_POINT_UNRELIABLE).unwrap_or(0);
-    Some(Unreliable { points, body: piece.body, particle: piece.ids[piece.chunk.first + k] })
+    Some(Unreliable { points, body: work.body, particle: work.ids[work.chunk.first + k] })
 }
 
 /// The smallest step that a point of the chunk asks for; the place of a point whose factor makes no sense.
-fn smallest_wish(piece: &Piece<'_, '_>) -> Result<Option<Wish>, usize> {
-    let s = &piece.scratch;
-    let n = piece.chunk.len;
-    let (mut factor, mut place) = (1.0, None);
+fn smallest_wish(work: &ChunkWork<'_, '_>) -> Result<Option<Wish>, usize> {
+    let s = &work.scratch;
+    let n = work.chunk.len;
+    let (mut factor, mut point) = (1.0, None);
     for (k, f) in s.dt_factor.iter().take(n).enumerate() {
         if *f <= 0.0 {
             return Err(k);
         }
         if *f < factor {
-            (factor, place) = (*f, Some(k));
+            (factor, point) = (*f, Some(k));
         }
     }
     let smaller = |s: &i32| *s == LAHAR_POINT_SMALLER_STEP;
-    if place.is_none() && s.status[..n].iter().fold(false, |any, s| any | smaller(s)) {
-        (factor, place) = (0.5, s.status[..n].iter().position(smaller));
+    if point.is_none() && s.status[..n].iter().fold(false, |any, s| any | smaller(s)) {
+        (factor, point) = (0.5, s.status[..n].iter().position(smaller));
     }
-    let id = |k: usize| piece.ids[piece.chunk.first + k];
-    Ok(place.map(|k| Wish { factor, body: piece.body, particle: id(k) }))
+    let id = |k: usize| work.ids[work.chunk.first + k];
+    Ok(point.map(|k| Wish { factor, body: work.body, particle: id(k) }))
 }
 
 /// The failure that a material does something wrong at point k.
 pub(super) fn fault<const D: usize>(
-    piece: &Piece<'_, '_>,
+    work: &ChunkWork<'_, '_>,
     k: usize,
     Moment { time, step, dt }: Moment,
     status: Status,
     what: &str,
 ) -> Box<Failure> {
-    let (body, model) = (piece.body, piece.material.model().name);
-    let particle = piece.ids[piece.chunk.first + k];
-    let (chunk, layout) = (&piece.chunk, piece.chunk.layout);
+    let (body, model) = (work.body, work.material.model().name);
+    let particle = work.ids[work.chunk.first + k];
+    let (chunk, layout) = (&work.chunk, work.chunk.layout);
     let text = format!(
         "the model `{model}` {what} at particle {particle} of body {body}: position {:?}, velocity {:?}, \
          start stress {:?}; check parameters, time step and boundaries",
         chunk.get::<D>(layout.position, k),
         chunk.get::<D>(layout.velocity, k),
-        piece.scratch.stress0_of(k),
+        work.scratch.stress0_of(k),
     );
     let place = Place { body: Some(body), particle: Some(particle), ..Place::default() };
     let occasion = Occasion { body, particle, step, time, dt };
-    let capsule = Capsule::of_point(piece.material, &piece.scratch, k, occasion);
+    let capsule = Capsule::of_point(work.material, &work.scratch, k, occasion);
     Box::new(Failure { error: Error::new(status, text).at(place), capsule: Some(capsule) })
 }

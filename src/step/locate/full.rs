@@ -1,6 +1,6 @@
 //! The plan that sorts all particles by block (Morton order) and cell, with a stable counting sort.
 
-use super::{Near, Plan, SORTING, place_inside};
+use super::{Near, Plan, SORTING, block_and_cell_inside};
 use crate::background::index::Index;
 use crate::background::key::{block_nodes, morton_order};
 use crate::background::{Key, NONE, Run};
@@ -13,7 +13,7 @@ use crate::step::parts::particle_count;
 #[derive(Debug, Default)]
 pub struct Sorter<const D: usize> {
     /// For each particle block × cells of a block + cell.
-    slot: Vec<u32>,
+    sort_key: Vec<u32>,
     order: Vec<u32>,
     count: Vec<u32>,
     number: Index,
@@ -38,27 +38,27 @@ pub(super) fn plan_sort<const D: usize>(
     sort_bodies(bodies, sorter, plan)
 }
 
-/// Numbers the blocks in the order in which particles meet them; `slot` becomes number × cells of a block + cell.
+/// Numbers the blocks in the order in which particles meet them; `sort_key` becomes number × cells of a block + cell.
 fn number_blocks<const D: usize>(
     bodies: &[Body],
     near: Near<'_, D>,
     sorter: &mut Sorter<D>,
 ) -> Result<()> {
     let cells = block_nodes(D) as u32;
-    sorter.slot.clear();
+    sorter.sort_key.clear();
     sorter.number.clear();
     sorter.owners.clear();
-    reserve(&mut sorter.slot, particle_count(bodies), SORTING)?;
+    reserve(&mut sorter.sort_key, particle_count(bodies), SORTING)?;
     let mut last: Option<(Key<D>, u32)> = None;
     for body in bodies {
         for k in 0..body.particles.len() {
-            let (key, cell) = place_inside(near, body, k)?;
+            let (key, cell) = block_and_cell_inside(near, body, k)?;
             let number = match last {
                 Some((same, number)) if same == key => number,
                 _ => number_of(sorter, &key)?,
             };
             last = Some((key, number));
-            sorter.slot.push(number * cells + cell);
+            sorter.sort_key.push(number * cells + cell);
         }
     }
     Ok(())
@@ -87,8 +87,8 @@ fn rank_owners<const D: usize>(sorter: &mut Sorter<D>) -> Result<()> {
     sorted.extend(0..owners.len() as u32);
     sorted.sort_unstable_by(|a, b| morton_order(&owners[*a as usize], &owners[*b as usize]));
     rank.resize(owners.len(), 0);
-    for (place, number) in sorted.iter().enumerate() {
-        rank[*number as usize] = place as u32;
+    for (position, number) in sorted.iter().enumerate() {
+        rank[*number as usize] = position as u32;
     }
     Ok(())
 }
@@ -100,30 +100,30 @@ fn sort_bodies<const D: usize>(
     plan: &mut Plan<D>,
 ) -> Result<()> {
     let cells = block_nodes(D) as u32;
-    let Sorter { slot, order, count, owners, sorted, rank, .. } = sorter;
+    let Sorter { sort_key, order, count, owners, sorted, rank, .. } = sorter;
     let mut start = 0;
     for (b, body) in bodies.iter().enumerate() {
         let n = body.particles.len();
-        let slots = &mut slot[start..start + n];
+        let sort_keys = &mut sort_key[start..start + n];
         start += n;
-        for slot in slots.iter_mut() {
-            *slot = rank[(*slot / cells) as usize] * cells + *slot % cells;
+        for sort_key in sort_keys.iter_mut() {
+            *sort_key = rank[(*sort_key / cells) as usize] * cells + *sort_key % cells;
         }
-        let slots = &*slots;
+        let sort_keys = &*sort_keys;
         let all = owners.len() * cells as usize;
         order.clear();
         reserve(order, n, SORTING)?;
         if n < all / 8 {
             // a small body in a large grid: counting would cost the whole grid
             order.extend(0..n as u32);
-            order.sort_unstable_by_key(|k| (slots[*k as usize], *k));
+            order.sort_unstable_by_key(|k| (sort_keys[*k as usize], *k));
         } else {
             order.resize(n, 0);
             count.clear();
             reserve(count, all + 1, SORTING)?;
-            counting_sort(slots, all, count, order);
+            counting_sort(sort_keys, all, count, order);
         }
-        let block = |k: &u32| slots[*k as usize] / cells;
+        let block = |k: &u32| sort_keys[*k as usize] / cells;
         let mut first = 0;
         for run in order.chunk_by(|a, b| block(a) == block(b)) {
             let end = first + run.len() as u32;
@@ -137,18 +137,18 @@ fn sort_bodies<const D: usize>(
     Ok(())
 }
 
-/// The stable order of `slots`, whose values are below `values`.
-fn counting_sort(slots: &[u32], values: usize, count: &mut Vec<u32>, order: &mut [u32]) {
+/// The stable order of `sort_keys`, whose values are below `values`.
+fn counting_sort(sort_keys: &[u32], values: usize, count: &mut Vec<u32>, order: &mut [u32]) {
     count.clear();
     count.resize(values + 1, 0);
-    for slot in slots {
-        count[*slot as usize + 1] += 1;
+    for sort_key in sort_keys {
+        count[*sort_key as usize + 1] += 1;
     }
     for s in 1..count.len() {
         count[s] += count[s - 1];
     }
-    for (k, slot) in slots.iter().enumerate() {
-        let to = &mut count[*slot as usize];
+    for (k, sort_key) in sort_keys.iter().enumerate() {
+        let to = &mut count[*sort_key as usize];
         order[*to as usize] = k as u32;
         *to += 1;
     }

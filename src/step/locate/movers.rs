@@ -3,13 +3,13 @@
 //! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
 //! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
 
-use super::{Near, Plan, SORTING, place_inside};
+use super::{Near, Plan, SORTING, block_and_cell_inside};
 use crate::background::index::Index;
 use crate::background::key::morton_order;
 use crate::background::{Blocks, Key, NONE, Run};
 use crate::error::Result;
 use crate::memory::{refill, reserve};
-use crate::particles::{Body, Span, in_order};
+use crate::particles::{Body, RunStart, in_order};
 use crate::step::parts::particle_count;
 
 /// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.
@@ -37,7 +37,7 @@ pub struct Regrouper<const D: usize> {
     /// For each run the end of its arrivals; before that the number of them, then their start.
     arrived: Vec<u32>,
     /// Where the runs of the sequence start; one more at the end.
-    spans: Vec<Span>,
+    starts: Vec<RunStart>,
 }
 
 /// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles did;
@@ -105,7 +105,7 @@ fn find_movers<const D: usize>(
                 key = blocks.keys()[run.block as usize];
                 buffers.first_mover.push(buffers.movers.len() as u32);
             }
-            let (new, _) = place_inside(near, body, k as usize)?;
+            let (new, _) = block_and_cell_inside(near, body, k as usize)?;
             if new != key {
                 let slot = blocks.find_near(run.block, &new);
                 let known = slot.map_or(NONE, |slot| buffers.run_of[slot as usize]);
@@ -203,12 +203,12 @@ fn lay_out<const D: usize>(
     buffers: &mut Regrouper<D>,
     plan: &mut Plan<D>,
 ) -> Result<()> {
-    let Regrouper { new_keys, count, sequence, spans, .. } = buffers;
+    let Regrouper { new_keys, count, sequence, starts, .. } = buffers;
     let (runs, keys) = (&body.runs, blocks.keys());
-    refill(spans, sequence.len() + 1, SORTING)?;
+    refill(starts, sequence.len() + 1, SORTING)?;
     let (mut last, mut first) = (0, 0);
     for r in sequence.iter().map(|r| *r as usize) {
-        spans.push(Span { old: last, new: first });
+        starts.push(RunStart { old: last, new: first });
         let end = first + count[r];
         let (block, key) = match runs.get(r) {
             Some(run) => {
@@ -223,18 +223,18 @@ fn lay_out<const D: usize>(
         }
         first = end;
     }
-    spans.push(Span { old: last, new: first });
+    starts.push(RunStart { old: last, new: first });
     Ok(())
 }
 
 /// Adds the moves that fill the new ranges.
 fn fill_runs<const D: usize>(buffers: &Regrouper<D>, plan: &mut Plan<D>) -> Result<()> {
-    let Regrouper { movers, first_mover, sequence, arrivals, arrived, spans, .. } = buffers;
+    let Regrouper { movers, first_mover, sequence, arrivals, arrived, starts, .. } = buffers;
     let moves = &mut plan.moves;
     moves.reserve_segments(sequence.len(), movers.len(), SORTING)?;
-    in_order(spans, |place| {
-        let r = sequence[place] as usize;
-        let (this, next) = (spans[place], spans[place + 1]);
+    in_order(starts, |s| {
+        let r = sequence[s] as usize;
+        let (this, next) = (starts[s], starts[s + 1]);
         let leavers = match first_mover.get(r + 1) {
             Some(end) => &movers[first_mover[r] as usize..*end as usize],
             None => &[],
