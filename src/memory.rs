@@ -14,7 +14,8 @@ pub struct Aligned {
 }
 
 impl Aligned {
-    /// A zeroed buffer of `len` doubles and at least [`LANES`] more behind them, or [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
+    /// A zeroed buffer of `len` doubles and at least [`LANES`] more behind them, or
+    /// [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn zeroed(len: usize) -> Result<Self> {
         let mut memory = Vec::new();
         let all = len + ALIGN / size_of::<f64>() + LANES;
@@ -45,19 +46,19 @@ impl Aligned {
     }
 }
 
-/// Makes room for `more` elements, or says that there is none.
+/// Makes room for `more` elements, or reports that there is none.
 pub fn reserve<T>(list: &mut Vec<T>, more: usize, what: &str) -> Result<()> {
     list.try_reserve(more).map_err(|_| no_memory::<T>(more, what))
 }
 
-/// Makes room for `all` elements in all and not more, or says that there is none.
+/// Makes room for `all` elements in all and not more, or reports that there is none.
 pub fn reserve_exact<T>(list: &mut Vec<T>, all: usize, what: &str) -> Result<()> {
     let more = all.saturating_sub(list.len());
     list.try_reserve_exact(more).map_err(|_| no_memory::<T>(more, what))
 }
 
-/// Empties a list whose length comes and goes and makes room for `n` elements; if that takes more memory, for twice as many, so that it
-/// seldom does.
+/// Empties a list whose length comes and goes and makes room for `n` elements; if that takes more
+/// memory, for twice as many, so that it seldom does.
 pub fn refill<T>(list: &mut Vec<T>, n: usize, what: &str) -> Result<()> {
     list.clear();
     if n <= list.capacity() { Ok(()) } else { reserve_exact(list, 2 * n + 16, what) }
@@ -73,8 +74,8 @@ fn no_memory<T>(more: usize, what: &str) -> Error {
     )
 }
 
-/// Distance between the columns of `n` particles: whole groups of 8, and an odd number of them, so that the columns of a power of two of
-/// particles do not fall into the same sets of the cache.
+/// Distance between the columns of `n` particles: whole groups of 8, and an odd number of them, so
+/// that the columns of a power of two of particles do not fall into the same sets of the cache.
 pub const fn stride_of(n: usize) -> usize {
     (n.div_ceil(LANES) | 1) * LANES
 }

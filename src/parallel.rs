@@ -1,4 +1,4 @@
-//! Who works: the threads of a context, and how work is dealt out to them. Nothing else in lahar decides
+//! The threads of a context, and how work is divided among them. Nothing else in lahar decides
 //! whether work is parallel.
 //!
 //! The threads are a rayon pool that is joined at its end, which rayon's own do not offer.
@@ -25,7 +25,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// Starts them. Error: [`Status::Threads`] if the system gives fewer.
+    /// Starts them. Error: [`Status::Threads`] if the system refuses one.
     pub(crate) fn new(count: usize, log: &Arc<LogQueue>) -> Result<Arc<Self>> {
         let pool = if count > 1 { Some(Pool::new(count, log)?) } else { None };
         let used = (0..count).map(|_| AtomicBool::new(false)).collect();
@@ -42,7 +42,8 @@ impl Threads {
         self.used.iter().filter(|u| u.load(Ordering::Relaxed)).count()
     }
 
-    /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go through.
+    /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go
+    /// through.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(f),
@@ -53,9 +54,11 @@ impl Threads {
         }
     }
 
-    /// Runs `a` and `b`, at the same time if the calling code is inside [`Threads::install`] of a pool.
+    /// Runs `a` and `b`, at the same time if the calling code is inside [`Threads::install`] of a
+    /// pool.
     ///
-    /// With one thread both run here one after the other; `rayon::join` would start rayon's global pool.
+    /// With one thread both run here one after the other; `rayon::join` would start rayon's global
+    /// pool.
     pub fn join<A: Send, B: Send>(
         &self,
         a: impl FnOnce() -> A + Send,
@@ -67,7 +70,7 @@ impl Threads {
         }
     }
 
-    /// Notes that the running thread has worked for this context.
+    /// Records that the running thread has worked for this context.
     pub fn mark(&self) {
         let worker = match &self.pool {
             Some(pool) => pool.worker(),
@@ -80,14 +83,14 @@ impl Threads {
         }
     }
 
-    /// Error [`Status::Threads`] if this process was forked after the threads had been started: they did
-    /// not come along.
+    /// Error [`Status::Threads`] if this process was forked after the threads had been started:
+    /// they did not come along.
     pub fn check_process(&self) -> Result<()> {
         self.pool.as_ref().map_or(Ok(()), Pool::check_process)
     }
 }
 
-/// Those who work on a step of a world: all threads of its context, or one.
+/// The threads that work on a step of a world: all of its context, or one.
 #[derive(Clone)]
 pub struct Team {
     threads: Arc<Threads>,
@@ -110,19 +113,19 @@ impl Team {
         if self.together { self.threads.install(f) } else { f() }
     }
 
-    /// How many parts work is best cut into where more parts cost memory.
+    /// Whether all threads work, or one.
     pub fn is_together(&self) -> bool {
         self.together
     }
 
-    /// Calls `work` with the whole, or with its parts on all threads. What it does must not depend on how
-    /// the whole was divided.
+    /// Calls `work` with the whole, or with its parts on all threads. What it does must not depend
+    /// on how the whole was divided.
     pub fn for_each<W: Divide>(&self, whole: W, work: impl Fn(W) + Sync) {
         if self.together { self.part(whole, &work, &|(), ()| ()) } else { work(whole) }
     }
 
-    /// Calls `work` with the parts, and folds the results from left to right: neither parts nor order
-    /// depend on the number of threads.
+    /// Calls `work` with the parts, and folds the results from left to right: neither parts nor
+    /// order depend on the number of threads.
     pub fn fold<W: Divide, R: Send>(
         &self,
         whole: W,
@@ -155,7 +158,8 @@ impl Team {
         fold(a, b)
     }
 
-    /// Calls `work` with number and slices of every piece; threads take at least `grain` pieces at a time.
+    /// Calls `work` with number and slices of every piece; threads take at least `grain` pieces at
+    /// a time.
     pub fn for_each_piece<S: Slices>(
         &self,
         slices: S,
@@ -171,13 +175,14 @@ impl Team {
     }
 }
 
-/// What can be worked on in parts.
+/// Work that can be divided among threads.
 pub trait Divide: Sized + Send {
     /// Two parts, or the whole if it is small enough for one thread.
     fn divide(self) -> (Self, Option<Self>);
 }
 
-/// Slices that are cut into pieces side by side: piece n of one goes with piece n of the others.
+/// Slices that are cut into pieces of a given length, in parallel: piece n of one goes with piece n
+/// of the others.
 pub trait Slices: Sized + Send {
     /// A piece of each.
     type Piece;
@@ -293,7 +298,8 @@ impl Pool {
         let built = ThreadPoolBuilder::new()
             .num_threads(threads)
             .start_handler(move |_| {
-                // Threads inherit the floating-point environment of the thread that starts them, traps included.
+                // Threads inherit the floating-point environment of the thread that starts them,
+                // traps included.
                 environment::set_default();
                 platform::silence();
                 log::adopt(&queue);
@@ -352,7 +358,7 @@ impl Drop for Pool {
             mem::forget(self.pool.take());
             return;
         }
-        self.pool = None; // tells the threads to end
+        self.pool = None; // the drop ends the threads
         join(handles);
     }
 }

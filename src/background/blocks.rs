@@ -1,4 +1,5 @@
-//! The set of active blocks: keys, slots, neighbours. It knows nothing of what the nodes hold.
+//! The set of active blocks: keys, slots, neighbours. What the nodes hold is in
+//! [`nodes`](super::nodes).
 
 use super::index::Index;
 use super::key::{Key, block_nodes, morton_order, split_node};
@@ -12,21 +13,21 @@ pub const NONE: u32 = u32::MAX;
 /// What memory is for, if there is none.
 const WHAT: &str = "the blocks of the grid";
 
-/// A grid of at most so many slots keeps its memory.
+/// A grid of at most so many slots is never compacted.
 const SMALL: usize = 64;
 
-/// Corners of a block's neighbourhood: bit d of the position stands for a step along axis d.
+/// Slots of the blocks around one; bit d of the corner number stands for a step along axis d.
 pub type Neighbours = [u32; 8];
 
 /// Blocks, each with 4^D nodes in row-major order (last axis fastest).
 ///
-/// A block keeps its slot, and with it the place of its nodes' records, from the step in which it
-/// appears until it vanishes. Tables and records go by slot; a free slot has no neighbours and nodes
-/// without mass. Hosts know nodes by numbers that go by the Morton order of the blocks: see
+/// A block stays in its slot, and its nodes' records stay where they are, from the step in which it
+/// appears until it vanishes. Tables and records go by slot; a free slot has no neighbours and
+/// nodes without mass. Hosts know nodes by numbers that go by the Morton order of the blocks: see
 /// [`Blocks::record`].
 ///
-/// An active slot is **owned**, or a **ghost**: a block that tiles here reach and that somebody else
-/// updates. Until work is shared among processes all are owned.
+/// An active slot is **owned**, or a **ghost**: a block that tiles here reach and that somebody
+/// else updates. Until work is shared among processes all are owned.
 #[derive(Debug)]
 pub struct Blocks<const D: usize> {
     keys: Vec<Key<D>>,
@@ -100,7 +101,8 @@ impl<const D: usize> Blocks<D> {
         self.index.find(key, &self.keys)
     }
 
-    /// Slot of the block with this key, which is most likely next to the block in slot `from`, an owner of particles.
+    /// Slot of the block with this key, which is most likely next to the block in slot `from`, an
+    /// owner of particles.
     #[inline]
     pub fn find_near(&self, from: u32, key: &Key<D>) -> Option<u32> {
         let old = &self.keys[from as usize];
@@ -132,8 +134,8 @@ impl<const D: usize> Blocks<D> {
         self.order[node / nodes] as usize * nodes + node % nodes
     }
 
-    /// Number of a node of a layer (place of its block in Morton order times 4^D, plus its place in the
-    /// block), if its block is active.
+    /// Number of a node of a layer (place of its block in Morton order times 4^D, plus its number
+    /// in the block), if its block is active.
     pub fn find_node(&self, layer: u32, index: [i64; D]) -> Option<usize> {
         let mut key = Key { layer, at: [0; D] };
         let mut local = 0;
@@ -177,14 +179,14 @@ impl<const D: usize> Blocks<D> {
             + self.index.bytes()
     }
 
-    /// Forgets what the last change created and removed.
+    /// Resets the numbers of blocks that the last change created and removed.
     pub fn no_change(&mut self) {
         (self.created, self.removed) = (0, 0);
     }
 
-    /// First half of a change: finds out which blocks shall be active, those that the tiles of the
-    /// owners reach, and with `keep` the present ones too. An owner may be named more than once. Gives
-    /// the number of slots that the second half needs.
+    /// First half of a change: determines which blocks shall be active, those that the tiles of the
+    /// owners reach, and with `keep_active` the present ones too. An owner may be named more than
+    /// once. Returns the number of slots that the second half needs.
     pub fn plan(&mut self, owners: &[Key<D>], keep_active: bool) -> Result<usize> {
         self.reach(owners)?;
         if keep_active {
@@ -196,10 +198,11 @@ impl<const D: usize> Blocks<D> {
         Ok(if blocks > self.keys.len() { room(blocks) } else { self.keys.len() })
     }
 
-    /// Second half: there are `slots` slots, and exactly the planned blocks are active. Slots that were
-    /// freed are listed in [`Blocks::freed`].
+    /// Second half: there are `slots` slots, and exactly the planned blocks are active. Slots that
+    /// were freed are listed in [`Blocks::freed`].
     ///
-    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were.
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they
+    /// were.
     pub fn carry_out(&mut self, slots: usize) -> Result<()> {
         self.freed.clear();
         if slots > self.keys.len() {
@@ -217,8 +220,8 @@ impl<const D: usize> Blocks<D> {
         &self.freed
     }
 
-    /// The same blocks in new slots, in Morton order, with as many free ones; None unless most slots are
-    /// free now.
+    /// The same blocks in new slots, in Morton order, with as many free ones; None unless most
+    /// slots are free now.
     pub fn compacted(&self) -> Result<Option<Self>> {
         if self.keys.len() <= SMALL || 4 * self.order.len() >= self.keys.len() {
             return Ok(None);
@@ -234,7 +237,8 @@ impl<const D: usize> Blocks<D> {
         Ok(Some(small))
     }
 
-    /// Marks the blocks that the owners' tiles reach, and lists those that do not exist yet, along the Morton curve.
+    /// Marks the blocks that the owners' tiles reach, and lists those that do not exist yet, along
+    /// the Morton curve.
     fn reach(&mut self, owners: &[Key<D>]) -> Result<()> {
         self.reached.fill(false);
         self.fresh.clear();
@@ -336,7 +340,7 @@ impl<const D: usize> Blocks<D> {
         }
     }
 
-    /// Makes a block and its neighbours known to each other.
+    /// Enters a block and its neighbours into each other's tables.
     fn link(&mut self, slot: usize) {
         let key = self.keys[slot];
         for corner in 0..1 << D {

@@ -1,11 +1,13 @@
-//! Where a key stands in a list of keys: an open-addressing table of positions, so that memory is reserved before a step needs it.
+//! Where a key stands in a list of keys: an open-addressing table of positions, so that memory is
+//! reserved before a step needs it.
 
 use super::blocks::NONE;
 use super::key::Key;
 use crate::error::Result;
 use crate::memory::reserve;
 
-/// Positions of keys in a list that the caller keeps; at most half full.
+/// Positions of keys in a list that the caller owns. The table has buckets, at most half of them
+/// full.
 #[derive(Debug, Default)]
 pub struct Index {
     table: Vec<u32>,
@@ -14,7 +16,8 @@ pub struct Index {
 impl Index {
     /// Makes room for `count` keys in all.
     ///
-    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the table as it was.
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the table as it
+    /// was.
     pub fn reserve<const D: usize>(&mut self, count: usize, keys: &[Key<D>]) -> Result<()> {
         if 2 * count <= self.table.len() {
             return Ok(());
@@ -30,7 +33,7 @@ impl Index {
         Ok(())
     }
 
-    /// Forgets all keys.
+    /// Removes all keys.
     pub fn clear(&mut self) {
         self.table.fill(NONE);
     }
@@ -59,7 +62,8 @@ impl Index {
         self.table[bucket] = position;
     }
 
-    /// Takes the key at a position of the list out, and moves those up that stood behind it for lack of their own place.
+    /// Removes the key at a position of the list, and moves keys up that stood behind it because
+    /// their own bucket was taken.
     pub fn remove<const D: usize>(&mut self, position: u32, keys: &[Key<D>]) {
         let mask = self.table.len() - 1;
         let mut hole = home(&keys[position as usize]) & mask;
@@ -88,7 +92,7 @@ impl Index {
     }
 }
 
-/// Where a key would like to stand: its layer and coordinates, mixed.
+/// The bucket of a key if it is free, before the mask: its layer and coordinates, mixed.
 fn home<const D: usize>(key: &Key<D>) -> usize {
     let mix = |h: u64, k: &i32| {
         (h.rotate_left(23) ^ u64::from(*k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15)

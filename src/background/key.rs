@@ -5,11 +5,11 @@ use std::cmp::Ordering;
 /// Nodes along the edge of a block.
 pub const EDGE: usize = 4;
 
-/// Which block: its layer and its integer coordinates. It holds the nodes `4 * at .. 4 * at + 3` along
-/// each axis.
+/// Which block: its layer and its integer coordinates. It holds the nodes `4 * at .. 4 * at + 3`
+/// along each axis.
 ///
-/// Layers are velocity fields that stand at the same coordinates; blocks of one are no neighbours of
-/// those of another.
+/// Layers are velocity fields that stand at the same coordinates; blocks of one are no neighbours
+/// of those of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key<const D: usize> {
     /// The layer; 0 for all bodies that share a velocity field.
@@ -23,8 +23,9 @@ pub const fn block_nodes(dimension: usize) -> usize {
     EDGE.pow(dimension as u32)
 }
 
-/// Order of keys: by layer, then along the Morton curve, found without interleaving bits: the axis whose coordinates differ in the
-/// highest bit decides; the first axis wins ties. Flipping the sign bit makes negative coordinates ordinary.
+/// Order of keys: by layer, then along the Morton curve, found without interleaving bits: the axis
+/// whose coordinates differ in the highest bit decides; the first axis wins ties. Flipping the sign
+/// bit makes negative coordinates ordinary.
 pub fn morton_order<const D: usize>(a: &Key<D>, b: &Key<D>) -> Ordering {
     if a.layer != b.layer {
         return a.layer.cmp(&b.layer);

@@ -1,7 +1,8 @@
-//! The sparse background grid: blocks of 4^D nodes that appear where particles are and vanish behind them.
+//! The sparse background grid: blocks of 4^D nodes that appear where particles are and vanish
+//! behind them.
 //!
-//! [`blocks`] is the topology, [`nodes`] what the nodes hold, [`tiles`] the patches between particles and
-//! nodes, [`space`] where all of it stands.
+//! [`blocks`] is the topology, [`nodes`] what the nodes hold, [`tiles`] the patches between
+//! particles and nodes, [`space`] where all of it stands.
 
 pub mod blocks;
 pub mod index;
@@ -19,8 +20,8 @@ pub use tiles::{Run, TileNode, Tiles};
 use crate::choice::choices;
 use crate::error::Result;
 
-/// Room to make for the nodes of `n` blocks or tiles, whose number comes and goes: an eighth to a half more, so that it seldom grows. It
-/// depends on n alone, not on how many there were before.
+/// Room to make for the nodes of `n` blocks or tiles, whose number comes and goes: an eighth to a
+/// half more, so that it seldom grows. It depends on n alone, not on how many there were before.
 pub fn room(n: usize) -> usize {
     (n + n / 8).next_multiple_of((n.next_power_of_two() / 8).max(8))
 }
@@ -74,11 +75,12 @@ impl<const D: usize> Background<D> {
         Self { space, blocks, nodes, tiles: Tiles::new(shape_nodes) }
     }
 
-    /// Makes exactly the blocks that the tiles of these owners reach active; with `keep`, the present ones
-    /// too. An owner may be named more than once. Slots of blocks that stay may change if most are free.
+    /// Makes exactly the blocks that the tiles of these owners reach active; with `keep_active`,
+    /// the present ones too. An owner may be named more than once. Slots of blocks that stay may
+    /// change if most are free.
     ///
-    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they were or
-    /// as they shall be; the call can be repeated.
+    /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory), with the blocks as they
+    /// were or as they shall be; the call can be repeated.
     pub fn set_owners(&mut self, owners: &[Key<D>], keep_active: bool) -> Result<()> {
         let Self { blocks, nodes, .. } = self;
         let slots = blocks.plan(owners, keep_active)?;

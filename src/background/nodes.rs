@@ -1,4 +1,4 @@
-//! What nodes hold: three records each, by number. Nodes know nothing of blocks.
+//! What nodes hold: three records each, by number, whatever their blocks are.
 
 use crate::error::Result;
 use crate::memory::reserve_exact;
@@ -9,9 +9,10 @@ const WHAT: &str = "the nodes of the grid";
 
 /// First lane of the mass in a node of a tile.
 pub const MASS: usize = 0;
-/// First lane of the vector of the first record in a node of a tile: momentum, on the way back velocity.
+/// First lane of the vector of the first record in a node of a tile: momentum, on the way back
+/// velocity.
 pub const FIRST: usize = 1;
-/// First lane of the vector of the second record: force, on the way back what a gather asks for.
+/// First lane of the vector of the second record: force, on the way back what a gather needs.
 pub const SECOND: usize = 5;
 
 /// A number and a vector of a node; in two dimensions the third component is zero.
@@ -67,15 +68,15 @@ impl Record {
         Self([0.0, x / by, y / by, z / by])
     }
 
-    /// Notes that a condition holds component a of the node; of the record of changes alone, whose number
-    /// is free. The grid update forgets it.
+    /// Notes that a condition holds component a of the node; of the record of changes alone, whose
+    /// number is free. The grid update clears it.
     pub fn hold(&mut self, a: usize) {
         if !self.is_held(a) {
             self.0[0] += f64::from(1 << a);
         }
     }
 
-    /// Whether [`Record::hold`] was told so.
+    /// Whether [`Record::hold`] was called for component a.
     pub fn is_held(&self, a: usize) -> bool {
         self.0[0] as i32 >> a & 1 == 1
     }
@@ -112,7 +113,8 @@ pub fn parted(TileNode([a, b, c, d, e, f, g, h]): &TileNode) -> (Record, Record)
     (Record([*a, *b, *c, *d]), Record([*e, *f, *g, *h]))
 }
 
-/// A vector with `value` along the axes of both records, lane by lane: what [`Record::load_pair`] adds to.
+/// A vector with `value` along the axes of both records, lane by lane: what [`Record::load_pair`]
+/// adds to.
 pub fn pair_of_vectors<const D: usize>(value: [f64; D]) -> [f64; LANES] {
     let mut lanes = [0.0; LANES];
     for a in 0..D {
@@ -124,10 +126,11 @@ pub fn pair_of_vectors<const D: usize>(value: [f64; D]) -> [f64; LANES] {
 /// The records of all nodes.
 #[derive(Debug, Default)]
 pub struct Nodes {
-    /// Mass and momentum [kg, kg m/s] after the scatter, mass and velocity [kg, m/s] after the grid update.
+    /// Mass and momentum [kg, kg m/s] after the scatter, mass and velocity [kg, m/s] after the grid
+    /// update.
     pub velocity: Vec<Record>,
-    /// Change of velocity after the grid update, in MUSL then the second velocity, in XPIC and FMPM the
-    /// velocity that particles take [m/s].
+    /// Change of velocity after the grid update, in MUSL then the second velocity, in XPIC and FMPM
+    /// the velocity that particles take [m/s].
     pub increment: Vec<Record>,
     /// Force of the particles on the node [N].
     pub force: Vec<Record>,

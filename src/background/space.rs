@@ -2,19 +2,19 @@
 
 use crate::simd::{Real, each};
 
-/// Largest distance from the origins of grid and space, in cells, at which particles are accepted: farther
-/// away a double is too coarse for the small moves of a step.
+/// Largest distance from the origins of grid and space, in cells, at which particles are accepted:
+/// farther away a double is too coarse for the small moves of a step.
 pub const FARTHEST: f64 = 1e8;
 
-/// How far below an upper wall, in cells, a position on it counts to be: its stencil must not begin a cell
-/// further.
+/// How far below an upper wall, in cells, a position on it counts to be: its stencil must not begin
+/// a cell further.
 const BELOW_WALL: f64 = 1e-9;
 
 fn below(wall: f64) -> f64 {
     if wall.is_finite() { wall - BELOW_WALL * (1.0 + wall.abs()) } else { wall }
 }
 
-/// The place of the grid in space.
+/// Where the grid stands in space.
 #[derive(Clone, Copy, Debug)]
 pub struct Space<const D: usize> {
     /// Position of node 0 [m].
@@ -27,8 +27,8 @@ pub struct Space<const D: usize> {
     pub first_offset: f64,
     /// Distance, in cells, at which nodes feel a wall.
     pub wall_reach: f64,
-    /// Nodes of the walls below and above along each axis, next to which shape functions are modified;
-    /// infinite if they are not.
+    /// Nodes of the walls below and above along each axis, next to which shape functions are
+    /// modified; infinite if they are not.
     pub walls: [[f64; 2]; D],
     /// Positions between those walls.
     inside: [[f64; 2]; D],
@@ -42,7 +42,8 @@ impl<const D: usize> Space<D> {
         Self { origin, spacing, inverse, first_offset, wall_reach, walls, inside: walls }
     }
 
-    /// The same with walls that modify shape functions: axis, side of the material, and position [m] of each.
+    /// The same with walls that modify shape functions: axis, side of the material, and position
+    /// [m] of each.
     pub fn with_walls(mut self, walls: impl Iterator<Item = (usize, i32, f64)>) -> Self {
         self.walls = [[f64::NEG_INFINITY, f64::INFINITY]; D];
         for (axis, side, position) in walls {

@@ -1,7 +1,9 @@
-//! Tiles: the private grid patch into which the particles of a block scatter, and the copy from which they gather.
+//! Tiles: the private grid patch into which the particles of a block scatter, and the copy from
+//! which they gather.
 //!
-//! A tile covers its block and the first N − 1 node layers of the next blocks: (4 + N − 1)^D nodes. After the scatter each
-//! block pulls from the tiles that reach it in a fixed order, so sums do not depend on the number of threads.
+//! A tile covers its block and the first N − 1 node layers of the next blocks: (4 + N − 1)^D nodes.
+//! After the scatter each block pulls from the tiles that reach it in a fixed order, so sums do not
+//! depend on the number of threads.
 
 use super::blocks::Neighbours;
 use super::nodes::{Record, joined};
@@ -41,7 +43,8 @@ pub struct Tiles {
     pub runs: Vec<Run>,
     /// For each tile its runs, as a range of `runs`.
     pub tiles: Vec<(u32, u32)>,
-    /// For each tile the number of particles in the tiles before it, and behind the last the number of all.
+    /// For each tile the number of particles in the tiles before it, and behind the last the number
+    /// of all.
     pub start: Vec<u32>,
     /// For each slot of the grid its tiles, as a range of `tiles`.
     pub of_block: Vec<(u32, u32)>,
@@ -55,8 +58,8 @@ impl Tiles {
         Self { edge: EDGE + shape_nodes - 1, ..Self::default() }
     }
 
-    /// Deals the runs of all bodies out to tiles. `place` gives for each slot of the grid its place in Morton order; `dimension` is
-    /// the number of axes.
+    /// Assigns the runs of all bodies to tiles. `place` gives for each slot of the grid its place
+    /// in Morton order; `dimension` is the number of axes.
     ///
     /// Errors: [`Status::OutOfMemory`](crate::error::Status::OutOfMemory).
     pub fn assign(
@@ -105,7 +108,7 @@ impl Tiles {
         self.fit_nodes(dimension)
     }
 
-    /// Room for the nodes of all tiles; memory is given back when less than a quarter is needed.
+    /// Room for the nodes of all tiles; memory is released when less than a quarter is needed.
     fn fit_nodes(&mut self, dimension: usize) -> Result<()> {
         let nodes = room(self.tiles.len()) * self.tile_nodes(dimension);
         if nodes > self.nodes.len() || 4 * nodes < self.nodes.len() {
@@ -143,8 +146,8 @@ impl Tiles {
     }
 }
 
-/// The rows that a tile shares with the block at `corner` of its neighbourhood: first node of the row in the tile, in the block,
-/// and the number of nodes.
+/// The rows that a tile shares with the block at `corner` of its neighbourhood: first node of the
+/// row in the tile, in the block, and the number of nodes.
 #[inline(always)]
 pub fn shared_rows<const D: usize>(
     edge: usize,
@@ -164,8 +167,8 @@ pub fn shared_rows<const D: usize>(
     })
 }
 
-/// Copies the nodes that the particles of `block` see into a tile: the velocities in the first four lanes,
-/// `second` in the others.
+/// Copies the nodes that the particles of `block` see into a tile: the velocities in the first four
+/// lanes, `second` in the others.
 #[inline(always)]
 pub fn load_tile<V: Vector, const D: usize>(
     (blocks, nodes): (&Blocks<D>, &Nodes),

@@ -6,7 +6,8 @@ use super::Particles;
 use crate::background::Run;
 use crate::material::Material;
 
-/// Edge lengths of the domains of a body's particles when it was added [m]; in two dimensions the third is 1.
+/// Edge lengths of the domains of a body's particles when it was added [m]; in two dimensions the
+/// third is 1.
 #[derive(Clone, Debug)]
 pub enum Sizes {
     /// The host gave none.

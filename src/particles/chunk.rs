@@ -10,11 +10,11 @@ pub const CHUNK: usize = 512;
 /// Particles in a task, a number of chunks that one thread works through.
 const TASK: usize = 2 * CHUNK;
 
-/// The columns of particles that stand one after the other.
+/// The columns of consecutive particles: of a body, of a task, or of a chunk of [`CHUNK`].
 pub struct ChunkMut<'a> {
     /// Where the fields stand among the columns.
     pub layout: Layout,
-    /// Place of the first particle in its body.
+    /// Index of the first particle in its body.
     pub first: usize,
     /// Number of particles.
     pub len: usize,
@@ -23,7 +23,8 @@ pub struct ChunkMut<'a> {
 }
 
 impl<'a> ChunkMut<'a> {
-    /// The first `len` particles of columns with the given stride, and their marks (see [`Particles::moved`](super::Particles::moved)).
+    /// The first `len` particles of columns with the given stride, and their marks (see
+    /// [`Particles::moved`](super::Particles::moved)).
     pub fn new(
         layout: Layout,
         len: usize,
@@ -91,7 +92,7 @@ impl<'a> ChunkMut<'a> {
         std::array::from_fn(|c| self.column(first + c)[k])
     }
 
-    /// In two, the first part with `mid` particles, a multiple of 64.
+    /// The first `mid` particles, a multiple of 64, and the others.
     fn split(self, mid: usize) -> (Self, Self) {
         let Self { layout, first, len, table, moved } = self;
         let (table, right) = table.split_rows(mid);
@@ -148,7 +149,8 @@ impl<const D: usize> Motion<'_, D> {
     }
 }
 
-/// Tasks of at most 1024 particles: which particles belong to one does not depend on the number of threads.
+/// Tasks of at most 1024 particles: which particles belong to one does not depend on the number of
+/// threads.
 impl Divide for ChunkMut<'_> {
     fn divide(self) -> (Self, Option<Self>) {
         if self.len <= TASK {

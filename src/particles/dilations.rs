@@ -1,6 +1,6 @@
 //! What the averaging of F-bar takes of a body's particles.
 
-/// Positions and volumes of all particles, and the rates of growth of some in a row, to write.
+/// Positions and volumes of all particles, and the rates of growth of consecutive ones, to write.
 pub struct Dilations<'a, const D: usize> {
     position: [&'a [f64]; D],
     /// Volumes [m³].

@@ -1,7 +1,8 @@
-//! The table of particle fields: name, shape, unit and writer of everything a particle carries, and which
-//! bodies carry it. A new field is a line of [`Layout`].
+//! The table of particle fields: name, shape, unit and writer of everything a particle carries, and
+//! which bodies carry it. A new field is a line of [`Layout`].
 //!
-//! Writers, views, copies and documentation iterate it; the state variables of a body's model follow behind.
+//! Writers, views, copies and documentation iterate it; the state variables of a body's model
+//! follow behind.
 
 use std::ffi::CStr;
 
@@ -9,7 +10,7 @@ use crate::material::{Input, Model};
 use crate::shape::ShapeKind;
 use crate::transfer::TransferKind;
 
-/// What hosts may know of a field.
+/// What hosts can query about a field.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldInfo {
     /// Name.
@@ -122,8 +123,8 @@ impl Rule {
     }
 }
 
-/// The table. A line has name, shape, unit, writer, rule and a sentence; what some bodies lack also has the
-/// condition under which a body carries it.
+/// The table. A line has name, shape, unit, writer, rule and a sentence; what some bodies lack also
+/// has the condition under which a body carries it.
 macro_rules! fields {
     (
         always { $($name:ident: $shape:ident [$unit:literal], $writer:ident, $rule:ident, $text:literal;)+ }
@@ -168,7 +169,8 @@ macro_rules! fields {
                 Self { $($name: 0,)+ $($some: Some(columns),)+ state: columns }
             }
 
-            /// All fields of the engine: columns, whether hosts see them, rule, and what hosts may know.
+            /// All fields of the engine: columns, whether hosts see them, rule, and what hosts may
+            /// know.
             fn all(&self, dimension: usize) -> Vec<(Columns, Writer, Rule, FieldInfo)> {
                 let mut list = Vec::new();
                 $(list.push({
@@ -185,7 +187,8 @@ macro_rules! fields {
                 list
             }
 
-            /// Every field that both layouts have, as pairs of columns in this one and in the other.
+            /// Every field that both layouts have, as pairs of columns in this one and in the
+            /// other.
             pub fn shared_with(&self, other: &Self, dimension: usize) -> Vec<(usize, usize)> {
                 let mut pairs = Vec::new();
                 let mut pair = |from: usize, to: usize, count: usize| {

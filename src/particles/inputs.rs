@@ -4,8 +4,8 @@ use super::Layout;
 use crate::material::Input;
 use crate::material::scratch::Scratch;
 
-/// Fills the inputs that the model wants, but density; `column` gives a column of the points, `ids` those of
-/// their particles, `spacing` is that of the grid [m].
+/// Fills the inputs that the model takes, but density; `column` gives a column of the points, `ids`
+/// those of their particles, `spacing` is that of the grid [m].
 pub fn fill_inputs<'c>(
     scratch: &mut Scratch<'_>,
     layout: &Layout,
@@ -41,7 +41,7 @@ pub fn fill_inputs<'c>(
     }
 }
 
-/// Fills the density from mass and volume, if the model wants it.
+/// Fills the density from mass and volume, if the model takes it.
 pub fn fill_density<'c>(
     scratch: &mut Scratch<'_>,
     layout: &Layout,

@@ -1,7 +1,7 @@
 //! Particles of a body: one column of doubles per component, all in one aligned allocation.
 //!
-//! Component `c` of the columns and particle `k` stand at `data[c * stride + k]`; the same memory is what hosts see through
-//! views, what the stages work on in chunks, and what a sort permutes.
+//! Component `c` of the columns and particle `k` stand at `data[c * stride + k]`; the same memory
+//! is what hosts see through views, what the stages work on in chunks, and what a sort permutes.
 
 mod body;
 pub mod chunk;
@@ -25,7 +25,7 @@ use crate::simd::{LANES, prefetch};
 /// Prefetch distance of moves [segments].
 const AHEAD: usize = 8;
 
-/// Particles of a segment that are prefetched; more follow by themselves.
+/// Particles of a segment that are prefetched; the processor prefetches the others by itself.
 const FETCHED: u32 = 512;
 
 /// The particles of one body.
@@ -33,10 +33,10 @@ const FETCHED: u32 = 512;
 pub struct Particles {
     /// Where each field starts among the columns.
     pub layout: Layout,
-    /// Persistent ids, in storage order: the place in which the host gave the particle.
+    /// Persistent ids, in storage order: the position at which the host gave the particle.
     pub id: Vec<i64>,
-    /// Bit k % 64 of word k / 64 is set if particle k may have left its block since particles were last sorted into blocks. Chunks
-    /// of a multiple of 64 particles have words of their own.
+    /// Bit k % 64 of word k / 64 is set if particle k may have left its block since particles were
+    /// last sorted into blocks. Chunks of a multiple of 64 particles have words of their own.
     pub moved: Vec<u64>,
     stride: usize,
     data: Aligned,
@@ -124,7 +124,7 @@ impl Particles {
         &mut self.data.as_mut_slice()[component * stride..][..n]
     }
 
-    /// Some components in a row, with the padding between them.
+    /// Consecutive components, with the padding between them.
     pub fn columns(&self, first: usize, components: usize) -> &[f64] {
         &self.data.as_slice()[first * self.stride..(first + components) * self.stride]
     }
@@ -134,7 +134,8 @@ impl Particles {
         &mut self.data.as_mut_slice()[first * self.stride..(first + components) * self.stride]
     }
 
-    /// `N` components of the particles `first..end`, each followed by [`LANES`] more doubles, so that eight can be read at a time.
+    /// `N` components of the particles `first..end`, each followed by [`LANES`] more doubles, so
+    /// that eight can be read at a time.
     pub fn read<const N: usize>(&self, component: usize, first: usize, end: usize) -> [&[f64]; N] {
         let data = self.data.with_margin();
         let column = |c: usize| &data[c * self.stride..][first..end + LANES];

@@ -1,30 +1,31 @@
-//! Which particles of a body change places, so that those of a block stand together.
+//! Which particles of a body move to another index, so that those of a block form one run.
 
 use std::ops::Range;
 
 use crate::error::Result;
 use crate::memory::reserve;
 
-/// Neighbours that move together.
+/// Particles with consecutive indices that move together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// Place of the first one before.
+    /// Index of the first one before.
     pub from: u32,
-    /// Place of the first one after.
+    /// Index of the first one after.
     pub to: u32,
-    /// How many they are.
+    /// How many.
     pub len: u32,
 }
 
-/// Particles that change places. First the single ones are taken out; then the segments go to their new places one after the other,
-/// each onto places from which all who are still needed have gone; then the single ones are put in.
+/// Particles that move to another index. First the single ones are taken out; then the segments
+/// move one after the other, each onto indices that no particle needs any more; then the single
+/// ones are put in.
 #[derive(Debug, Default)]
 pub struct Moves {
-    /// Places of the single particles before.
+    /// Indices of the single particles before.
     pub from: Vec<u32>,
-    /// Their places after.
+    /// Their indices after.
     pub to: Vec<u32>,
-    /// The particles that move together, in the order in which they can.
+    /// The particles that move together, in the order in which they must.
     pub segments: Vec<Segment>,
 }
 
@@ -35,19 +36,19 @@ pub struct MovesEnd {
     segments: usize,
 }
 
-/// A part of the lists of moves: those of one body.
+/// The moves of one body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMoves<'a> {
-    /// Places of the single particles before.
+    /// Indices of the single particles before.
     pub from: &'a [u32],
-    /// Their places after.
+    /// Their indices after.
     pub to: &'a [u32],
     /// The particles that move together.
     pub segments: &'a [Segment],
 }
 
 impl Moves {
-    /// Forgets all moves.
+    /// Removes all moves.
     pub fn clear(&mut self) {
         self.from.clear();
         self.to.clear();
@@ -69,7 +70,8 @@ impl Moves {
         }
     }
 
-    /// Makes room for the segments of `runs` runs that `leavers` particles leave; if that takes more memory, for twice as many.
+    /// Makes room for the segments of `runs` runs that `leavers` particles leave; if that takes
+    /// more memory, for twice as many.
     pub fn reserve_segments(&mut self, runs: usize, leavers: usize, what: &str) -> Result<()> {
         let more = 2 * runs + leavers;
         if self.segments.capacity() - self.segments.len() >= more {
@@ -78,7 +80,8 @@ impl Moves {
         reserve(&mut self.segments, 2 * more, what)
     }
 
-    /// Adds the moves that sort a body; `order[k]` is the particle that belongs at place k.
+    /// Adds the moves that sort a body; `order[k]` is the index before of the particle that gets
+    /// index k.
     pub fn sort(&mut self, order: &[u32]) {
         for (to, from) in order.iter().enumerate() {
             if *from != to as u32 {
@@ -88,17 +91,20 @@ impl Moves {
         }
     }
 
-    /// Adds the moves of a run of particles that had the places `old` and gets the places `new`. Some leave it (`leavers`, ascending),
-    /// others arrive, and who stays and stands in `new` does not move. Who stays and does not goes to the places of `new` that
-    /// are not in `old`, together with the holes that the leavers make; only if there are fewer places, holes are cut out, and
-    /// when there is none any more, the last go singly into holes elsewhere. The arrivals get the holes and places that are
-    /// left.
+    /// Adds the moves of a run whose indices were `old` and become `new`. Some particles leave it
+    /// (`leavers`, ascending), others arrive. Of those that stay, the ones whose indices are in
+    /// `new` do not move. The others move as segments to the room, the indices of `new` that are
+    /// not in `old`, together with the holes that the leavers make among them; only if the run
+    /// shrinks are holes cut out, and when the room is full, the last go one by one into holes
+    /// elsewhere. The arrivals get the holes and the room that are left.
+    ///
+    /// The picture in `step/locate/movers.rs` shows an example.
     pub fn refill(&mut self, old: Range<u32>, new: Range<u32>, leavers: &[u32], arrivals: &[u32]) {
         if new.is_empty() {
             return;
         }
         let mut holes = inside(leavers, old.start.max(new.start)..old.end.min(new.end));
-        // a run that grows at both ends is the only one with two rooms, and none of its particles needs one
+        // only a run that grows at both ends has two rooms, and none of its particles needs one
         let rooms = [new.start..new.end.min(old.start), new.start.max(old.end)..new.end];
         let [mut room, spare] = if rooms[0].is_empty() { [rooms[1].clone(), 0..0] } else { rooms };
         let mut surplus = old.len().saturating_sub(new.len());
@@ -121,7 +127,8 @@ impl Moves {
         debug_assert_eq!(self.from.len(), self.to.len());
     }
 
-    /// Carries neighbours into a room as far as it reaches, and the rest of them into holes.
+    /// Moves consecutive particles into a room as far as it reaches, and the rest of them into
+    /// holes.
     fn carry(&mut self, range: Range<u32>, room: &mut Range<u32>, holes: &mut &[u32]) {
         let whole = range.len().min(room.len()) as u32;
         if whole > 0 {
@@ -135,16 +142,18 @@ impl Moves {
     }
 }
 
-/// Those of an ascending list that are in a range; one that ends before it starts has none.
+/// The elements of an ascending list that are in a range; a range that ends before it starts has
+/// none.
 fn inside(list: &[u32], range: Range<u32>) -> &[u32] {
     let start = list.partition_point(|k| *k < range.start);
     let count = list[start..].partition_point(|k| *k < range.end);
     &list[start..start + count]
 }
 
-/// An old and a new row of the same runs; each list holds where the runs start, and at last where the row ends. Says in which order the
-/// runs can be refilled, so that none gets particles onto places of another that still has to move its own: where ends of runs
-/// in a row move up, from the last of these runs to the first, elsewhere from the first to the last.
+/// Calls `refill` for each run, in an order in which none gets particles onto indices of another
+/// that still has to move its own: where the ends of consecutive runs move up, from the last of
+/// these runs to the first, elsewhere from the first to the last. `starts` are those of the runs,
+/// and at last the end.
 pub fn in_order(starts: &[RunStart], mut refill: impl FnMut(usize)) {
     let mut first = 0;
     while first + 1 < starts.len() {
@@ -160,9 +169,9 @@ pub fn in_order(starts: &[RunStart], mut refill: impl FnMut(usize)) {
 /// Where a run starts.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStart {
-    /// Its first place before; that of the next run if it was empty.
+    /// Its first index before; that of the next run if it was empty.
     pub old: u32,
-    /// Its first place after; that of the next run if it is empty.
+    /// Its first index after; that of the next run if it is empty.
     pub new: u32,
 }
 
@@ -182,8 +191,8 @@ mod tests {
         row
     }
 
-    /// The moves between rows of runs that follow each other as `runs` does. `target` names the run in which each particle belongs;
-    /// of the runs `old` tells the lengths before.
+    /// The moves between rows of runs in the order of `runs`. `target` names the run of each
+    /// particle after, `old` are the lengths of the runs before.
     fn regroup(runs: &[u8], old: &[u32], target: &[u8]) -> Moves {
         let (mut starts, mut at) = (Vec::new(), RunStart { old: 0, new: 0 });
         for (name, old) in runs.iter().zip(old) {
@@ -204,7 +213,7 @@ mod tests {
         moves
     }
 
-    /// Moves letters from one row of runs to another; the letter tells the run in which it belongs.
+    /// Moves letters from one row of runs to another; the letter is the name of its run after.
     fn regrouped(before: &[&str], runs: &str) -> String {
         let mut old = vec![0; runs.len()];
         for (run, name) in before.iter().zip(b'a'..) {

@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use crate::memory::reserve;
 
-/// A region to fill with particles. In two dimensions z is ignored, bodies are 1 m thick and a sphere is a disc.
+/// A region to fill with particles. In two dimensions z is ignored, bodies are 1 m thick and a
+/// sphere is a disc.
 #[derive(Clone, Debug)]
 pub enum Region {
     /// An axis-aligned box [m].
@@ -59,8 +60,8 @@ const MOST: f64 = 4e9;
 
 /// Positions of the particles of a region and the edge lengths of each.
 ///
-/// A box is divided evenly, so its volume is exact; other regions take the points of a lattice aligned with the grid that
-/// lie inside. The lattice has `per_cell` points a cell along each axis.
+/// A box is divided evenly, so its volume is exact; other regions take the points of a lattice
+/// aligned with the grid that lie inside. The lattice has `per_cell` points a cell along each axis.
 pub fn fill<const D: usize>(
     region: &Region,
     per_cell: i32,

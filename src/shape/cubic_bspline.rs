@@ -1,6 +1,8 @@
-//! Cubic B-spline: w(r) = ½ |r|³ − r² + 2/3 on |r| < 1 and (2 − |r|)³ / 6 on 1 ≤ |r| < 2, r in units of the spacing.
+//! Cubic B-spline: w(r) = ½ |r|³ − r² + 2/3 on |r| < 1 and (2 − |r|)³ / 6 on 1 ≤ |r| < 2, r in
+//! units of the spacing.
 //!
-//! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360.
+//! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948,
+//! doi:10.1002/nme.2360.
 
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::{Real, each};

@@ -1,9 +1,11 @@
-//! Generalised interpolation: the linear shape function averaged over the particle's domain, a box of edges 2 l.
+//! Generalised interpolation: the linear shape function averaged over the particle's domain, a box
+//! of edges 2 l.
 //!
-//! With r in units of the spacing: 1 − (r² + l²) / 2l on |r| < l, 1 − |r| up to 1 − l, (1 + l − |r|)² / 4l up to 1 + l.
-//! S. G. Bardenhagen, E. M. Kober, CMES 5 (2004) 477–496, doi:10.3970/cmes.2004.005.477. Whether the domains keep their size (uniform
-//! GIMP) or follow the stretch (contiguous-particle GIMP) is not told here: the weights know the size alone. A domain
-//! counts as one cell wide at most, since it would reach a fourth node otherwise.
+//! With r in units of the spacing: 1 − (r² + l²) / 2l on |r| < l, 1 − |r| up to 1 − l,
+//! (1 + l − |r|)² / 4l up to 1 + l. S. G. Bardenhagen, E. M. Kober, CMES 5 (2004) 477–496,
+//! doi:10.3970/cmes.2004.005.477. Whether the domains keep their size (uniform GIMP) or follow the
+//! stretch (contiguous-particle GIMP) is not decided here: the weights depend on the size alone. A
+//! domain counts as one cell wide at most, since it would reach a fourth node otherwise.
 
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
@@ -43,7 +45,8 @@ impl ShapeFunction<3> for Gimp {
 #[inline(always)]
 fn weight<R: Real>(r: R, l: R, inverse: R) -> (R, R) {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let outer = (one + l - r).max(zero).min(l + l); // how much of the domain's far edge is under the hat
+    // how much of the domain's far edge is under the hat
+    let outer = (one + l - r).max(zero).min(l + l);
     let inner = (l - r).max(zero); // how far the domain reaches over its top
     let slant = (one - l - r).max(zero);
     let w = inverse * (R::splat(0.5) * outer * outer - inner * inner) + slant; // [SHP-2]

@@ -14,7 +14,8 @@ impl ShapeFunction<2> for Linear {
     fn axis<R: Real>(at: At<R>) -> Axis<R, 2> {
         let (one, least) = (R::splat(1.0), R::splat(f64::EPSILON));
         let first = at.xi.floor();
-        // On a node plane the far node would have no mass and hence no velocity, but its slope would still count.
+        // On a node plane the far node would have no mass and hence no velocity, but its slope
+        // would still count.
         let f = (at.xi - first).max(least).min(one - least);
         Axis { first, fraction: f, w: [one - f, f], dw: [-one, one] } // [SHP-1]
     }

@@ -1,7 +1,8 @@
-//! Moving least squares: the slopes of a spline become r w / Σ w r², so that gradients of fields are those of the line that fits best, and
-//! forces are −Σ V σ r w / Σ w r².
+//! Moving least squares: the slopes of a spline become r w / Σ w r², so that gradients of fields
+//! are those of the line that fits best, and forces are −Σ V σ r w / Σ w r².
 //!
-//! Y. Hu, Y. Fang, Z. Ge, Z. Qu, Y. Zhu, A. Pradhana, C. Jiang, ACM Trans. Graph. 37 (2018) 150, doi:10.1145/3197517.3201293.
+//! Y. Hu, Y. Fang, Z. Ge, Z. Qu, Y. Zhu, A. Pradhana, C. Jiang, ACM Trans. Graph. 37 (2018) 150,
+//! doi:10.1145/3197517.3201293.
 
 use std::marker::PhantomData;
 
@@ -19,7 +20,9 @@ impl<S: ShapeFunction<N>, const N: usize> ShapeFunction<N> for Mls<S> {
     fn axis<R: Real>(at: At<R>) -> Axis<R, N> {
         let axis = S::axis(at);
         let inverse = R::splat(const { 1.0 / S::MOMENT.expect("a spline") });
-        let dw = each!(n in N => (R::splat(n as f64) - axis.fraction) * axis.w[n] * inverse); // [TRF-5]
+        let dw = each!(n in N => {
+            (R::splat(n as f64) - axis.fraction) * axis.w[n] * inverse // [TRF-5]
+        });
         Axis { dw, ..axis }
     }
 }

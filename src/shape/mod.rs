@@ -1,6 +1,7 @@
 //! Shape functions: how a particle is spread over nodes.
 //!
-//! A shape function is one function of one axis; the tensor product is written once, in [`weights`].
+//! A shape function is one function of one axis; the tensor product is written once, in
+//! [`weights`].
 
 pub mod cubic_bspline;
 pub mod gimp;
@@ -51,7 +52,7 @@ choices! {
     }
 }
 
-/// What the engine knows of a shape function whatever its type.
+/// Properties of a shape function, whatever its type.
 struct Facts {
     nodes: usize,
     first_offset: f64,
@@ -93,8 +94,9 @@ impl ShapeKind {
         self.facts().is_sized
     }
 
-    /// How far from a wall, in units of the spacing, nodes still feel it: radius of the support − 1. (A particle of GIMP that touches a wall on a
-    /// node plane gives nothing to the nodes behind.)
+    /// How far from a wall, in units of the spacing, nodes still feel it: radius of the
+    /// support − 1. (A particle of GIMP that touches a wall on a node plane gives nothing to the
+    /// nodes behind.)
     pub const fn wall_reach(self) -> f64 {
         if self.is_sized() { 0.0 } else { 0.5 * self.nodes() as f64 - 1.0 }
     }

@@ -1,6 +1,8 @@
-//! Quadratic B-spline: w(r) = ¾ − r² on |r| < ½ and ½ (3/2 − |r|)² on ½ ≤ |r| < 3/2, r in units of the spacing.
+//! Quadratic B-spline: w(r) = ¾ − r² on |r| < ½ and ½ (3/2 − |r|)² on ½ ≤ |r| < 3/2, r in units of
+//! the spacing.
 //!
-//! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948, doi:10.1002/nme.2360.
+//! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948,
+//! doi:10.1002/nme.2360.
 
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;

@@ -1,4 +1,5 @@
-//! The stencil of particles: nodes, weights and gradients as a tensor product of one-dimensional functions.
+//! The stencil of particles: nodes, weights and gradients as a tensor product of one-dimensional
+//! functions.
 
 use crate::background::Space;
 use crate::simd::Real;
@@ -37,7 +38,8 @@ pub fn at_point<const D: usize>(space: &Space<D>, x: [f64; D], size: [f64; D]) -
     std::array::from_fn(|d| At::along(space, d, xi[d], size[d]))
 }
 
-/// Weights along one axis, of one particle or of eight. Node `first + n` has weight `w[n]` and slope `dw[n]` [1/h].
+/// Weights along one axis, of one particle or of eight. Node `first + n` has weight `w[n]` and
+/// slope `dw[n]` [1/h].
 #[derive(Clone, Copy, Debug)]
 pub struct Axis<R, const N: usize> {
     /// Lowest node of the stencil.
@@ -54,7 +56,8 @@ pub struct Axis<R, const N: usize> {
 pub trait ShapeFunction<const N: usize> {
     /// The lowest node at ξ is floor(ξ − FIRST_OFFSET).
     const FIRST_OFFSET: f64;
-    /// ∫ w (x_i − x_p)² over the nodes, in units of h², if it is the same everywhere (the matrix D of APIC).
+    /// ∫ w (x_i − x_p)² over the nodes, in units of h², if it is the same everywhere (the matrix D
+    /// of APIC).
     const MOMENT: Option<f64>;
     /// Whether the weights depend on the size of the particle.
     const SIZED: bool = false;
@@ -72,7 +75,7 @@ pub struct Stencil<R, const N: usize, const D: usize> {
 }
 
 impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
-    /// The stencil of a place.
+    /// The stencil of a point.
     #[inline(always)]
     pub fn new<S: ShapeFunction<N>>(at: [At<R>; D]) -> Self {
         let mut axes = [S::axis(at[0]); D];

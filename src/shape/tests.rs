@@ -8,13 +8,14 @@ use super::quadratic_bspline::QuadraticBspline;
 use super::stencil::{At, ShapeFunction, Stencil};
 use super::{ShapeKind, textbook};
 
-/// Places around which a wall may stand: the walls of a modified function are nodes 0 and 9.
+/// Positions around which a wall may stand: the walls of a modified function are nodes 0 and 9.
 fn at<const N: usize, S: ShapeFunction<N>>(xi: f64, half: f64) -> At<f64> {
     let walls = if S::MODIFIED { [0.0, 9.0] } else { [f64::NEG_INFINITY, f64::INFINITY] };
     At { xi, half, walls }
 }
 
-/// Sums over the nodes of a 3D stencil: Σ w, Σ w (x_i − x_p), Σ ∇w, Σ x_i ⊗ ∇w − I, all of which have known values.
+/// Sums over the nodes of a 3D stencil: Σ w, Σ w (x_i − x_p), Σ ∇w, Σ x_i ⊗ ∇w − I, all of which
+/// have known values.
 fn defects<const N: usize, S: ShapeFunction<N>>(xi: [f64; 3], half: f64) -> f64 {
     let stencil = Stencil::<f64, N, 3>::new::<S>(xi.map(|xi| at::<N, S>(xi, half)));
     let mut worst = [0.0; 16];

@@ -1,8 +1,10 @@
-//! The shape functions as textbooks write them, for the oracle: weight and slope of one node, by cases.
+//! The shape functions as textbooks write them, for the oracle: weight and slope of one node, by
+//! cases.
 
 use super::ShapeKind;
 
-/// Weight and slope [1/h] of the node at the signed distance r = (x_p − x_i) / h; `l` is half the particle's edge over h.
+/// Weight and slope [1/h] of the node at the signed distance r = (x_p − x_i) / h; `l` is half the
+/// particle's edge over h.
 pub fn weight(shape: ShapeKind, r: f64, l: f64) -> (f64, f64) {
     let (a, sign) = (r.abs(), if r < 0.0 { -1.0 } else { 1.0 });
     let (w, slope) = match shape {
@@ -26,9 +28,9 @@ pub fn weight(shape: ShapeKind, r: f64, l: f64) -> (f64, f64) {
     (w, sign * slope)
 }
 
-/// The same of a node between walls on the nodes `low` and `high`, where fields continue linearly behind the walls: node i has what is
-/// its own, twice what is of the node behind if it stands on the wall, and less that if it is the next one. `r(i)` is the distance from
-/// node i.
+/// The same of a node between walls on the nodes `low` and `high`, where fields continue linearly
+/// behind the walls: node i has what is its own, twice what is of the node behind if it stands on
+/// the wall, and less that if it is the next one. `r(i)` is the distance from node i.
 pub fn weight_between(
     shape: ShapeKind,
     i: i64,

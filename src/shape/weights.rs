@@ -1,19 +1,20 @@
-//! Weights on their way to the kernels: those of eight stencils, then of one particle in the lanes of a node, and the tensor product of
-//! its axes, which scatter and gather share.
+//! Weights on their way to the kernels: those of eight stencils, then of one particle in the lanes
+//! of a node, and the tensor product of its axes, which scatter and gather share.
 
 use super::stencil::Stencil;
 use crate::background::{EDGE, Key};
 use crate::simd::{LANES, Vector};
 
-/// Particles that go through each part of a kernel together: the parts have long chains of operations, which overlap within a part
-/// only.
+/// Particles of a batch, which go through each phase of a kernel together: phases have long chains
+/// of operations, which overlap within a phase only.
 pub const BATCH: usize = 4 * LANES;
-/// The same in groups of eight.
+/// Groups of eight in a batch.
 pub const GROUPS: usize = BATCH / LANES;
 
-/// The node of an axis that gets what the others leave, and from which the others are counted, since Σ w = 1 and Σ c = 0: that saves a
-/// third of the products. Its weight must never be small, or mass and momentum of a light node would lose their common factor; that
-/// excludes linear shape functions, which have none.
+/// The node of an axis that gets what the others leave, and from which the others are counted,
+/// since Σ w = 1 and Σ c = 0: that saves a third of the products. Its weight must never be small,
+/// or mass and momentum of a light node would lose their common factor; that excludes linear shape
+/// functions, which have none.
 const fn rest(nodes: usize) -> Option<usize> {
     if nodes > 2 { Some(1) } else { None }
 }
@@ -33,7 +34,8 @@ impl<const N: usize, const D: usize> Weights<N, D> {
         high: [[[0.0; LANES]; N]; D],
     };
 
-    /// c_n = [r_n w_n; w'_n] with the distance r_n = x_n − x_p in units of the spacing, or [w'_n; w'_n] if not `moments`.
+    /// c_n = [r_n w_n; w'_n] with the distance r_n = x_n − x_p in units of the spacing, or [w'_n;
+    /// w'_n] if not `moments`.
     #[inline(always)]
     pub fn set<V: Vector>(&mut self, stencil: &Stencil<V, N, D>, moments: bool) {
         for d in 0..D {
@@ -140,7 +142,8 @@ impl<V: Vector, const N: usize, const D: usize> Axes<V, N, D> {
     }
 }
 
-/// Places of the lowest nodes of eight stencils in the tile of block `key`, whose edge is 4 + N − 1 nodes.
+/// Indices of the lowest nodes of eight stencils in the tile of block `key`, whose edge is
+/// 4 + N − 1 nodes.
 #[inline(always)]
 pub fn corners<V: Vector, const N: usize, const D: usize>(
     stencil: &Stencil<V, N, D>,

@@ -1,8 +1,10 @@
-//! The floating-point environment: rounding, traps and flags belong to the host, the engine runs with the defaults.
+//! The floating-point environment: rounding, traps and flags belong to the host, the engine runs
+//! with the defaults.
 //!
-//! A Fortran host compiled with `-ffpe-trap=invalid,zero,overflow` traps on operations that are harmless inside the
-//! engine. Every entry therefore saves the host's environment, sets the default one, and puts the host's back when it
-//! leaves; callbacks of the host run in the host's environment.
+//! A Fortran host compiled with `-ffpe-trap=invalid,zero,overflow` traps on operations that are
+//! harmless inside the engine. Every entry therefore saves the host's environment, sets the default
+//! one, and puts the host's back when it leaves; callbacks of the host run in the host's
+//! environment.
 
 use std::cell::Cell;
 use std::ffi::c_int;
@@ -41,7 +43,8 @@ fn default_environment() -> *const Environment {
     return std::ptr::without_provenance(usize::MAX);
 }
 
-/// Sets the default environment on this thread for good: round to nearest, no traps, no flags. For worker threads.
+/// Sets the default environment on this thread for good: round to nearest, no traps, no flags. For
+/// worker threads.
 pub(crate) fn set_default() {
     // SAFETY: FE_DFL_ENV is a valid argument of fesetenv on every system that compiles this file.
     unsafe { fesetenv(default_environment()) };
@@ -87,7 +90,7 @@ pub(crate) fn control() -> Control {
         })
     };
     #[cfg(target_arch = "x86_64")]
-    return Control(word(0, 2) << 32 | word(28, 4) & !0x3f); // the x87 control word, and MXCSR less its flags
+    return Control(word(0, 2) << 32 | word(28, 4) & !0x3f); // x87 control word, MXCSR less its flags
     #[cfg(not(target_arch = "x86_64"))]
     return Control(word(0, 4)); // FPCR
 }
@@ -153,7 +156,8 @@ mod tests {
             assert_eq!(round(), nearest);
             let inside = control();
             assert!(with_host(control) != inside && control() == inside);
-            std::hint::black_box(std::hint::black_box(1.0_f64) / 3.0); // raises a flag, no control bit
+            // raises a flag, no control bit
+            std::hint::black_box(std::hint::black_box(1.0_f64) / 3.0);
             assert!(control() == inside);
             assert_eq!(with_host(round), UPWARD);
             assert_eq!(round(), nearest);

@@ -1,8 +1,10 @@
-//! Eight doubles at once: the type that the kernels are written in, and the choice of instruction set at run time.
+//! Eight doubles at once: the type that the kernels are written in, and the choice of instruction
+//! set at run time.
 //!
-//! The shipped library is built for the baseline processor. A kernel is written once, generic over [`Vector`]; [`Isa::dispatch`] runs
-//! the copy that was compiled for the widest instruction set that the processor has and `LAHAR_SIMD` allows. Within a path results
-//! are reproducible to the last bit; between paths they differ by round-off, since some fuse multiplication and addition.
+//! The shipped library is built for the baseline processor. A kernel is written once, generic over
+//! [`Vector`]; [`Isa::dispatch`] runs the copy that was compiled for the widest instruction set
+//! that the processor has and `LAHAR_SIMD` allows. Within a path results are reproducible to the
+//! last bit; between paths they differ by round-off, since some fuse multiplication and addition.
 
 pub(crate) mod environment;
 mod portable;
@@ -17,10 +19,12 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::error::{Error, Result};
 
-/// An array whose element i is an expression of i, in one dimension or two: `each!(i in N => …)`, `each!(a in N, b in M => …)`.
+/// An array whose element i is an expression of i, in one dimension or two: `each!(i in N => …)`,
+/// `each!(a in N, b in M => …)`.
 ///
-/// In kernels it stands for `std::array::from_fn` and `map`: a closure is a function of its own, which the compiler may leave outside the
-/// copy that is made for an instruction set, at twenty times the cost.
+/// In kernels it stands for `std::array::from_fn` and `map`: a closure is a function of its own,
+/// which the compiler may leave outside the copy that is made for an instruction set, at twenty
+/// times the cost.
 macro_rules! each {
     ($i:ident in $n:expr => $value:expr) => {{
         let mut out = [$crate::simd::Real::splat(0.0); $n];
@@ -116,7 +120,7 @@ pub trait Vector: Real {
     }
 }
 
-/// Asks the memory for the line that holds element `index`, which may lie behind the end, so that it is there when it is needed.
+/// Prefetches the cache line of element `index`, which may lie behind the end.
 #[inline(always)]
 pub fn prefetch<T>(list: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
@@ -134,8 +138,9 @@ impl Real for f64 {
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b // without the instruction a fused product is a slow call
     }
-    /// Adding and subtracting 1.5 · 2^52 rounds to the nearest whole number. The baseline instruction set has no rounding
-    /// instruction, and the library call costs more than the rest of a weight.
+    /// Adding and subtracting 1.5 · 2^52 rounds to the nearest whole number. The baseline
+    /// instruction set has no rounding instruction, and the library call costs more than the rest
+    /// of a weight.
     #[inline(always)]
     fn floor(self) -> Self {
         const WHOLE: f64 = 6_755_399_441_055_744.0;
@@ -160,10 +165,10 @@ impl Real for f64 {
     }
 }
 
-/// Work that is compiled once per instruction set. `run` must be `#[inline(always)]`, and so must what it calls with vectors; that
-/// excludes closures (see [`each`]).
+/// Work that is compiled once per instruction set. `run` must be `#[inline(always)]`, and so must
+/// what it calls with vectors; that excludes closures (see [`each`]).
 pub trait Kernel {
-    /// What the work gives.
+    /// The result of the work.
     type Output;
     /// Does the work with vectors `V`.
     fn run<V: Vector>(self) -> Self::Output;
@@ -182,7 +187,7 @@ enum Level {
     Avx512,
 }
 
-/// All levels that this build knows, the best last.
+/// All levels of this build, the best last.
 const LEVELS: &[Level] = &[
     Level::Scalar,
     #[cfg(target_arch = "x86_64")]
@@ -244,7 +249,8 @@ impl Isa {
         Ok(Self(level))
     }
 
-    /// What `LAHAR_SIMD` asks for, or the best where it is not set. Errors as for [`Isa::named`].
+    /// The one that `LAHAR_SIMD` names, or the best where it is not set. Errors as for
+    /// [`Isa::named`].
     pub fn of_environment() -> Result<Self> {
         match std::env::var_os("LAHAR_SIMD") {
             None => Ok(Self::best()),
@@ -268,7 +274,7 @@ impl Isa {
         match self.0 {
             Level::Scalar => kernel.run::<portable::Portable>(),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: an `Isa` of this level is only made after the processor was asked.
+            // SAFETY: an `Isa` of this level is only made if the processor supports it.
             Level::Avx2 => unsafe { x86::with_avx2(kernel) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.

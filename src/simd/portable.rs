@@ -1,4 +1,5 @@
-//! Eight doubles in plain Rust: the path of every processor. Where the baseline has vectors, as on AArch64, the compiler uses them.
+//! Eight doubles in plain Rust: the path of every processor. Where the baseline has vectors, as on
+//! AArch64, the compiler uses them.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};

@@ -1,7 +1,7 @@
 //! A table of doubles that threads divide among themselves: by columns, and each column by rows.
 //!
-//! Slices cannot say that two threads hold other rows of the same columns, but for one slice a column; and a
-//! body may have thousands of columns.
+//! Slices cannot express that two threads hold other rows of the same columns, but for one slice a
+//! column; and a body may have thousands of columns.
 
 use std::marker::PhantomData;
 
@@ -14,10 +14,10 @@ pub struct Table<'a> {
     data: PhantomData<&'a mut [f64]>,
 }
 
-// SAFETY: a table is a set of places in a slice that was borrowed for writing, and no two tables share a place;
-// doubles may go to other threads.
+// SAFETY: a table is a set of elements of a slice that was borrowed for writing, and no two tables
+// share one; doubles may go to other threads.
 unsafe impl Send for Table<'_> {}
-// SAFETY: as above; through a shared table places are only read.
+// SAFETY: as above; through a shared table elements are only read.
 unsafe impl Sync for Table<'_> {}
 
 impl<'a> Table<'a> {
@@ -44,7 +44,7 @@ impl<'a> Table<'a> {
     #[inline(always)]
     pub fn column(&self, c: usize) -> &[f64] {
         assert!(c < self.columns);
-        // SAFETY: the column is one of the table, whose places nobody writes while it is shared.
+        // SAFETY: the column is one of the table, whose elements nobody writes while it is shared.
         unsafe { std::slice::from_raw_parts(self.first.add(c * self.stride), self.rows) }
     }
 
@@ -52,7 +52,8 @@ impl<'a> Table<'a> {
     #[inline(always)]
     pub fn column_mut(&mut self, c: usize) -> &mut [f64] {
         assert!(c < self.columns);
-        // SAFETY: the column is one of the table, which is borrowed for writing as long as the slice lives.
+        // SAFETY: the column is one of the table, which is borrowed for writing as long as the
+        // slice lives.
         unsafe { std::slice::from_raw_parts_mut(self.first.add(c * self.stride), self.rows) }
     }
 
@@ -75,7 +76,8 @@ impl<'a> Table<'a> {
         assert!(!present || M * N == self.columns);
         std::array::from_fn(|a| {
             std::array::from_fn(|b| match present {
-                // SAFETY: the column is one of the table, which is consumed, and each is given away once.
+                // SAFETY: the column is one of the table, which is consumed, and each is given away
+                // once.
                 true => unsafe {
                     let first = self.first.add((N * a + b) * self.stride);
                     std::slice::from_raw_parts_mut(first, self.rows)
@@ -89,7 +91,7 @@ impl<'a> Table<'a> {
     #[inline(always)]
     pub fn some_rows(&mut self, first: usize, rows: usize) -> Table<'_> {
         assert!(first + rows <= self.rows);
-        // SAFETY: the place is inside the first column, or just behind it.
+        // SAFETY: the address is inside the first column, or just behind it.
         let first = unsafe { self.first.add(first) };
         Table { first, rows, data: PhantomData, ..*self }
     }
@@ -98,7 +100,7 @@ impl<'a> Table<'a> {
     #[inline(always)]
     pub fn split_columns(self, at: usize) -> (Self, Self) {
         assert!(at <= self.columns);
-        // SAFETY: the place is inside the slice, or the end of its last column.
+        // SAFETY: the address is inside the slice, or the end of its last column.
         let right = unsafe { self.first.add(at * self.stride) };
         let columns = self.columns - at;
         (Self { columns: at, ..self }, Self { first: right, columns, ..self })
@@ -107,7 +109,7 @@ impl<'a> Table<'a> {
     /// The rows before `at`, and the others.
     pub fn split_rows(self, at: usize) -> (Self, Self) {
         assert!(at <= self.rows);
-        // SAFETY: the place is inside the first column, or just behind it.
+        // SAFETY: the address is inside the first column, or just behind it.
         let right = unsafe { self.first.add(at) };
         let rows = self.rows - at;
         (Self { rows: at, ..self }, Self { first: right, rows, ..self })
@@ -119,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_of_a_table_hold_other_places() {
+    fn parts_of_a_table_hold_other_elements() {
         let mut data: Vec<f64> = (0..12).map(f64::from).collect();
         let table = Table::new(&mut data, 4, 3);
         assert_eq!((table.columns(), table.rows()), (3, 3));

@@ -1,7 +1,8 @@
 //! Eight doubles in two AVX2 registers or one AVX-512 register.
 //!
-//! The types are private to `simd`, and only `Isa::dispatch` makes kernels use them, after the processor was asked: that is why every
-//! intrinsic below is sound. Pointers come from slices and arrays whose length has been checked beside the call.
+//! The types are private to `simd`, and only `Isa::dispatch` makes kernels use them, with an `Isa`
+//! that the processor supports: that is why every intrinsic below is sound. Pointers come from
+//! slices and arrays whose length has been checked beside the call.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -11,7 +12,8 @@ use super::{Kernel, LANES, Real, TileNode, Vector};
 /// Calls an intrinsic.
 macro_rules! with {
     ($call:expr) => {
-        // SAFETY: the processor has the instruction (see the module), and pointers are checked beside the call.
+        // SAFETY: the processor has the instruction (see the module), and pointers are checked
+        // beside the call.
         unsafe { $call }
     };
 }
@@ -44,7 +46,7 @@ pub(super) unsafe fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx512>()
 }
 
-/// Asks the memory for a line; any address will do.
+/// Prefetches the cache line of an address, which may be any.
 #[inline(always)]
 pub(super) fn prefetch<T>(address: *const T) {
     with!(_mm_prefetch::<_MM_HINT_T0>(address.cast()));
@@ -368,7 +370,8 @@ impl Vector for Avx512 {
     #[inline(always)]
     fn transpose(r: [Self; LANES]) -> [Self; LANES] {
         with!({
-            let (mut even, mut odd) = ([r[0].0; 4], [r[0].0; 4]); // columns 0, 2, 4, 6 and 1, 3, 5, 7
+            // columns 0, 2, 4, 6 and 1, 3, 5, 7
+            let (mut even, mut odd) = ([r[0].0; 4], [r[0].0; 4]);
             for p in 0..4 {
                 even[p] = _mm512_unpacklo_pd(r[2 * p].0, r[2 * p + 1].0);
                 odd[p] = _mm512_unpackhi_pd(r[2 * p].0, r[2 * p + 1].0);

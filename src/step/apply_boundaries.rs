@@ -1,7 +1,8 @@
-//! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the momentum; then come the velocities that are
-//! [`prescribed`].
+//! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the
+//! momentum; then come the velocities that are [`prescribed`].
 //!
-//! A node that is held is not damped: its reaction is m Δv / dt − (f + m g), with the whole force, not with what local damping left of it.
+//! A node that is held is not damped: its reaction is m Δv / dt − (f + m g), with the whole force,
+//! not with what local damping left of it.
 
 pub mod prescribed;
 
@@ -15,8 +16,8 @@ use prescribed::{prescribe, prescribe_again};
 /// Blocks that one thread takes at least.
 const GRAIN: usize = 16;
 
-/// Applies walls and prescribed velocities to v_i and Δv_i and sums their forces on the material; `when` is
-/// the time at the start of the step and its length [s].
+/// Applies walls and prescribed velocities to v_i and Δv_i and sums their forces on the material;
+/// `when` is the time at the start of the step and its length [s].
 pub fn apply_boundaries<const D: usize>(
     background: &mut Background<D>,
     conditions: &mut Conditions,
@@ -43,7 +44,8 @@ pub fn apply_boundaries<const D: usize>(
     prescribe(background, &mut conditions.prescribed, when, undamped);
 }
 
-/// Where local damping is on: gravity [m/s²] and the step [s], of which the force without damping follows.
+/// Where local damping is on: gravity [m/s²] and the step [s], of which the force without damping
+/// follows.
 type Undamped = Option<([f64; 3], f64)>;
 
 fn apply_walls<const D: usize>(

@@ -1,9 +1,11 @@
-//! Stage 2b, tractions: every loaded particle gives t A to the nodes around its place on the surface.
+//! Stage 2b, tractions: every loaded particle adds t A to the nodes around its point of the
+//! surface.
 //!
-//! A force at the centre of a particle would reach the nodes as if the surface stood half a particle inside the body, and the outermost
-//! cell would carry a part of the stress alone. So the force acts at x_s = x_p ± n V / (2 A), the middle of the particle's outer face.
-//! Nodes without mass get nothing: the weights of the others are scaled up, so that the sum of the forces is t A. The loop is
-//! serial, in the order of the particles' ids: surfaces are thin.
+//! A force at the centre of a particle would reach the nodes as if the surface stood half a
+//! particle inside the body, and the outermost cell would carry a part of the stress alone. So the
+//! force acts at x_s = x_p ± n V / (2 A), the middle of the particle's outer face. Nodes without
+//! mass get nothing: the weights of the others are scaled up, so that the sum of the forces is t A.
+//! The loop is serial, in the order of the particles' ids: surfaces are thin.
 
 use super::parts::Method;
 use crate::background::{Background, Blocks, Nodes};
@@ -49,12 +51,12 @@ pub fn apply_tractions<const D: usize>(
     }
 }
 
-/// Makes the forces that the grid holds those of the step.
+/// Reports the forces that the grid holds as those of the step.
 pub fn report_tractions(tractions: &mut List<Loaded>) {
     tractions.iter_mut().for_each(|entry| entry.force = entry.condition.applied);
 }
 
-/// Gives a force to the nodes with mass around a place in a layer; false if there is none.
+/// Adds a force to the nodes with mass around a point in a layer; false if there is none.
 fn spread<const D: usize>(
     method: &Method<D>,
     blocks: &Blocks<D>,

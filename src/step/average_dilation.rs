@@ -1,11 +1,15 @@
-//! Stage 4c, F-bar: the rate at which particles of a body grow is averaged over patches of the grid, so that nearly incompressible and plastic
-//! material does not lock. Bodies without F-bar pass.
+//! Stage 4c, F-bar: the rate at which particles of a body grow is averaged over patches of the
+//! grid, so that nearly incompressible and plastic material does not lock. Bodies without F-bar are
+//! skipped.
 //!
-//! A patch is a cell between nodes, whatever the shape function. Patches between the half-cell planes of quadratic splines would be the cells of
-//! their polynomials, but the growth of such a cell is (v₊₁ − v₋₁) / 2: the pressure of every other one would be free of its neighbours. L̄ = L + (⟨tr L⟩ − tr L) I / n with the mean
-//! weighted by volume, n = 2 in plane strain, else 3; strain increment, volume and F take L̄. In rates it is the F̄ = (⟨J⟩ / J)^(1/n) F of
-//! E. A. de Souza Neto, D. Perić, M. Dutko, D. R. J. Owen, Int. J. Solids Struct. 33 (1996) 3277–3296, doi:10.1016/0020-7683(95)00259-6; for
-//! particles: W. M. Coombs, T. J. Charlton, M. Cortis, C. E. Augarde, Comput. Methods Appl. Mech. Engrg. 333 (2018) 1–21, doi:10.1016/j.cma.2018.01.010.
+//! A patch is a cell between nodes, whatever the shape function. Patches between the half-cell
+//! planes of quadratic splines would be the cells of their polynomials, but the growth of such a
+//! cell is (v₊₁ − v₋₁) / 2: the pressure of every other one would be free of its neighbours.
+//! L̄ = L + (⟨tr L⟩ − tr L) I / n with the mean weighted by volume, n = 2 in plane strain, else 3;
+//! strain increment, volume and F take L̄. In rates it is the F̄ = (⟨J⟩ / J)^(1/n) F of E. A. de
+//! Souza Neto, D. Perić, M. Dutko, D. R. J. Owen, Int. J. Solids Struct. 33 (1996) 3277–3296,
+//! doi:10.1016/0020-7683(95)00259-6; for particles: W. M. Coombs, T. J. Charlton, M. Cortis, C. E.
+//! Augarde, Comput. Methods Appl. Mech. Engrg. 333 (2018) 1–21, doi:10.1016/j.cma.2018.01.010.
 
 use super::grid_to_particles::Gather;
 use super::parts::Method;
@@ -14,13 +18,15 @@ use crate::background::{Background, Blocks, EDGE, Key, Run, Space};
 use crate::parallel::{Cut, Divide, Team};
 use crate::particles::{Body, Dilations};
 
-/// Patches that the particles of a block reach along each axis: their lowest nodes are in the block, or behind it by one.
+/// Patches that the particles of a block reach along each axis: their lowest nodes are in the
+/// block, or behind it by one.
 const REACH: usize = EDGE + 1;
 
-/// Sums over patches, kept from step to step.
+/// Sums over patches, a buffer reused from step to step.
 #[derive(Debug, Default)]
 pub struct Patches {
-    /// For each run of a body and each patch that it reaches: Σ V tr L and Σ V of the run's own particles.
+    /// For each run of a body and each patch that it reaches: Σ V tr L and Σ V of the run's own
+    /// particles.
     sums: Vec<[f64; 2]>,
     /// The run of each slot of the grid.
     runs: Vec<u32>,
@@ -29,7 +35,8 @@ pub struct Patches {
 /// No run.
 const NONE: u32 = u32::MAX;
 
-/// Leaves with every particle of the bodies with F-bar the mean rate of its patch, of the gradient that `gather` takes.
+/// Leaves with every particle of the bodies with F-bar the mean rate of its patch, of the gradient
+/// that `gather` takes.
 pub fn average_dilation<const D: usize>(
     bodies: &mut [Body],
     background: &Background<D>,
@@ -82,7 +89,7 @@ pub fn store_rates(work: &mut ChunkWork<'_, '_>) {
     }
 }
 
-/// Which of the patches that a block reaches a place belongs to.
+/// Index of the patch of a point among those that a block reaches.
 fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize {
     let xi = space.between_walls(x);
     (0..D).fold(0, |patch, d| {
@@ -92,7 +99,7 @@ fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize
 }
 
 impl Patches {
-    /// Sums up what the particles of each run of a body bring to the patches.
+    /// Sums up Σ V tr L and Σ V of each run of a body, patch by patch.
     fn collect<const D: usize>(
         &mut self,
         space: &Space<D>,
@@ -126,7 +133,8 @@ impl Patches {
 /// Runs that one thread takes at least.
 const FEW: usize = 8;
 
-/// Particles whose rates become means: those of some runs, the first of them run `first` of the body.
+/// Particles whose rates become means: those of some runs, the first of them run `first` of the
+/// body.
 struct Sharing<'a, const D: usize> {
     particles: Dilations<'a, D>,
     runs: &'a [Run],
@@ -177,7 +185,8 @@ impl<const D: usize> Whole<'_, D> {
         }
     }
 
-    /// The sums of a patch over all runs that reach it, from lower blocks to higher ones, so that all of them get the same.
+    /// The sums of a patch over all runs that reach it, from lower blocks to higher ones, so that
+    /// all of them get the same.
     fn total(&self, slot: u32, key: Key<D>, patch: usize) -> [f64; 2] {
         let index: [usize; D] =
             std::array::from_fn(|d| patch / REACH.pow((D - 1 - d) as u32) % REACH);

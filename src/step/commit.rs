@@ -1,6 +1,8 @@
-//! Stage 8, commit: what strain and stress stages left in scratch becomes that of the particles, if all of it is finite.
+//! Stage 8, commit: what strain and stress stages left in scratch becomes that of the particles, if
+//! all of it is finite.
 //!
-//! The work of the step goes into the strain energy, U += V ½ (σ0 + σ1) : Δε, unless the model gives its own energy.
+//! The work of the step goes into the strain energy, U += V ½ (σ0 + σ1) : Δε, unless the model
+//! gives its own energy.
 
 use super::pass::{ChunkWork, Moment};
 use super::time_step::Limits;

@@ -1,9 +1,11 @@
-//! Stage 4b, filter: the velocities u that particles take in XPIC and FMPM, see [`filter`](crate::transfer::filter). Other transfers pass.
+//! Stage 4b, filter: the velocities u that particles take in XPIC and FMPM, see
+//! [`filter`](crate::transfer::filter). Other transfers skip it.
 //!
-//! Each term of the filter sends u from the grid to the particles and back, through R1. Walls act on every u as they do on velocities: were
-//! they to act on the last one alone, what the filter amplifies and the walls cut off would come back larger in the next step.
-//! USF and MUSL take gradients of velocities that came from particles, S⁺ S u: they are filtered too, or gradients would be those of a field
-//! that is smoothed once more than the one that moves the particles.
+//! Each term of the filter sends u from the grid to the particles and back, through R1. Walls act
+//! on every u as they do on velocities: were they to act on the last one alone, what the filter
+//! amplifies and the walls cut off would come back larger in the next step. USF and MUSL take
+//! gradients of velocities that came from particles, S⁺ S u: they are filtered too, or gradients
+//! would be those of a field that is smoothed once more than the one that moves the particles.
 
 use super::apply_boundaries::hold_at_boundaries;
 use super::grid_to_particles::Gather;
@@ -19,7 +21,8 @@ use crate::transfer::{TransferKind, filter};
 /// Nodes that one thread takes at a time.
 const NODES: usize = 1024;
 
-/// Leaves in the increments the velocities that particles take; with FMPM they are the velocities of the grid too.
+/// Leaves in the increments the velocities that particles take; with FMPM they are the velocities
+/// of the grid too.
 pub fn filter_velocities<const D: usize>(
     bodies: &mut [Body],
     background: &mut Background<D>,

@@ -12,7 +12,7 @@
 //! | a step is done | yes | yes | yes | yes | yes |
 //! | a step is taken back | yes | yes | yes | no | yes |
 //!
-//! ("yes" means: as it was.) The grid is mapped again when somebody asks for it.
+//! ("yes" means: as it was.) The grid is mapped again when it is read.
 
 use super::time_step::Limits;
 
@@ -55,11 +55,12 @@ impl Freshness {
         self.mapped = None;
     }
 
-    /// The host may write a field of particles from now on; for the grid that counts when it is done.
+    /// The host may write a field of particles from now on; for the grid that counts when it is
+    /// done.
     pub fn field_opened(&mut self, field: &str) {
         self.checked = false;
         if field != "body_force" {
-            // which changes neither waves nor places
+            // which changes neither wave speeds nor positions
             (self.marked, self.limits) = (false, None);
         }
     }
@@ -86,7 +87,8 @@ impl Freshness {
 
     /// Particles are about to be moved into the runs of their blocks.
     pub fn locating(&mut self) {
-        self.grouped = false; // until it is done: without memory the runs would not belong to the new blocks
+        // until it is done: without memory the runs would not belong to the new blocks
+        self.grouped = false;
     }
 
     /// All particles stand in the runs of their blocks.
@@ -99,13 +101,14 @@ impl Freshness {
         self.mapped = Some(time);
     }
 
-    /// A step is done. It left the limits of the next one, and forces of the time `middle` [s] in the grid.
+    /// A step is done. It left the limits of the next one, and forces of the time `middle` [s] in
+    /// the grid.
     pub fn stepped(&mut self, limits: Limits, middle: f64) {
         self.limits = Some(limits);
         self.mapped = Some(middle);
     }
 
-    /// Limits were asked of the materials.
+    /// The materials computed the limits.
     pub fn limits_found(&mut self, limits: Limits) {
         self.limits = Some(limits);
     }

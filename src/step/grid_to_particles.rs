@@ -1,10 +1,11 @@
 //! Stage 5, grid to particles: v_p from the transfer scheme, x_p += dt Σ w v, ∇v_p = Σ v ⊗ ∇w.
 //!
-//! The mirror image of the scatter: a node has eight lanes, two of its records, and with the weights w_n and the pairs c_n of an axis (see
-//! [`weights`](crate::shape::weights)) one pass over rows, planes and stencil gives Σ w R of both and, along each axis,
-//! Σ r w or Σ ∂w of each. [`GatherJob::second`] and
-//! [`GatherJob::gradient_lane`] say which record stands where.
-//! Cost per particle, quadratic in 3D: 62 products and 36 sums of eight lanes, 27 nodes read, 3 doubles read and 24 written.
+//! The mirror image of the scatter: a node has eight lanes, two of its records, and with the
+//! weights w_n and the pairs c_n of an axis (see [`weights`](crate::shape::weights)) one pass over
+//! rows, planes and stencil gives Σ w R of both and, along each axis, Σ r w or Σ ∂w of each.
+//! [`GatherJob::second`] and [`GatherJob::gradient_lane`] give the record of each half. Cost per
+//! particle, quadratic in 3D: 62 products and 36 sums of eight lanes, 27 nodes read, 3 doubles read
+//! and 24 written.
 
 use std::marker::PhantomData;
 
@@ -81,8 +82,8 @@ struct GatherJob<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> GatherJob<'a, D> {
-    /// The record in the last four lanes of a node: affine transfers take moment and gradient of R0 at once, the others need R1
-    /// (FLIP its increment, MUSL its second velocity).
+    /// The record in the last four lanes of a node: affine transfers take moment and gradient of R0
+    /// at once, the others need R1 (FLIP its increment, MUSL its second velocity).
     fn second(&self) -> &'a [Record] {
         if self.transfer.is_affine() && !self.what.second() {
             &self.background.nodes.velocity
@@ -98,8 +99,8 @@ impl<'a, const D: usize> GatherJob<'a, D> {
     }
 }
 
-/// Updates the particles of a chunk from the grid and leaves their velocity gradients in the chunk's scratch;
-/// `runs` are those of the body.
+/// Updates the particles of a chunk from the grid and leaves their velocity gradients in the
+/// chunk's scratch; `runs` are those of the body.
 pub fn gather<S: ShapeFunction<N>, const N: usize, const D: usize>(
     work: &mut ChunkWork<'_, '_>,
     (background, runs): (&Background<D>, &[Run]),
@@ -181,7 +182,8 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel
     }
 }
 
-/// The velocity gradient of the particles in a range: its rows, and its last component, which is that of the hoop in axial symmetry.
+/// The velocity gradient of the particles in a range: its rows, and its last component, which is
+/// that of the hoop in axial symmetry.
 struct Gradient<'a, const D: usize> {
     rows: [[&'a mut [f64]; D]; D],
     hoop: &'a mut [f64],
@@ -289,7 +291,7 @@ impl<V: Vector, const D: usize> Taken<V, D> {
     }
 }
 
-/// Updates the particles of a range from what they took. Gives a bit for each that left its block.
+/// Stores what the particles of a range took. Returns a bit for each that left its block.
 #[inline(always)]
 fn store<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
@@ -332,8 +334,9 @@ fn store<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     outside::<V, S, N, D>(job, key, x, end - k)
 }
 
-/// Keeps the velocities, and affine matrices, of eight particles at `x`. (Each scheme stores for itself: a choice between values in memory
-/// would keep the compiler from holding them in registers.)
+/// Stores the velocities, and affine matrices, of eight particles at `x`. (Each scheme stores for
+/// itself: a choice between values in memory would force the compiler to hold them there instead of
+/// in registers.)
 #[inline(always)]
 fn store_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     job: &GatherJob<'_, D>,
@@ -437,8 +440,8 @@ fn load_row<V: Vector, const N: usize>(nodes: &[TileNode]) -> [V; N] {
     each!(n in N => V::load_node(&nodes[n]))
 }
 
-/// Nodes of a stencil that a point sees in a layer: calls `visit` with node number and weight; false if a
-/// node is missing.
+/// Nodes of a stencil that a point sees in a layer: calls `visit` with node number and weight;
+/// false if a node is missing.
 pub fn for_stencil_nodes<S: ShapeFunction<N>, const N: usize, const D: usize>(
     blocks: &Blocks<D>,
     layer: u32,

@@ -1,4 +1,5 @@
-//! Hooks: calls into the middle of a step, for Rust callers and tests. A step that is repeated smaller calls them again.
+//! Hooks: calls into the middle of a step, for Rust callers and tests. A step that is repeated
+//! smaller calls them again.
 
 use crate::background::Background;
 

@@ -1,4 +1,4 @@
-//! The explicit integrator: one step, repeated smaller where materials fail or ask for that.
+//! The explicit integrator: one step, repeated smaller where materials fail or request that.
 //!
 //! What drives a world calls [`integrate`]; another integrator is another such function beside it.
 
@@ -29,13 +29,13 @@ pub enum Stop {
         wanted: f64,
         /// The failure in the last attempt, if there was one.
         failure: Option<Box<Failure>>,
-        /// The smallest step that a point asked for.
+        /// The smallest step that a point requested.
         wish: Option<Wish>,
     },
 }
 
-/// Makes a step of `dt` [s], or a smaller one if a material wants that, `shorter` allows it, and the host
-/// lets steps be repeated.
+/// Makes a step of `dt` [s], or a smaller one if a material requests that, `shorter` allows it, and
+/// the host lets steps be repeated.
 pub fn integrate<const D: usize>(
     world: &mut Parts<D>,
     mut dt: f64,

@@ -19,12 +19,13 @@ use crate::shape::stencil::{At, ShapeFunction};
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::transfer::TransferKind;
 
-/// Calls the visitor with number and weight of every node of the stencil of a place in a layer; false if a
-/// node's block is not active.
+/// Calls the visitor with number and weight of every node of the stencil of a point in a layer;
+/// false if a node's block is not active.
 pub type NodesAt<const D: usize> =
     fn(&Blocks<D>, u32, [At<f64>; D], &mut dyn FnMut(usize, f64)) -> bool;
 
-/// The kernels of a world: those of the stages that depend on the shape function, each a whole stage.
+/// The kernels of a world: those of the stages that depend on the shape function, each a whole
+/// stage.
 #[derive(Clone, Copy)]
 pub struct Kernels<const D: usize> {
     /// Particles to tiles.

@@ -1,14 +1,18 @@
-//! Stage 1: every particle stands in the run of its block; blocks appear and vanish with their particles.
+//! Stage 1: every particle stands in the run of its block; blocks appear and vanish with their
+//! particles.
 //!
-//! A particle belongs to the block of the lowest node of its stencil. Particles that may have left their block are marked; if none has,
-//! nothing is done. Else a [`Plan`] says which runs there will be and which particles change places for that:
+//! A particle belongs to the block of the lowest node of its stencil. Particles that may have left
+//! their block are marked; if none has, nothing is done. Else a [`Plan`] lists the new runs and the
+//! particles that move for them:
 //!
-//! * [`movers`]: only those that left their block, and those that must make room. The order inside a block becomes stale.
-//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or when more than half left their
-//!   block.
+//! * [`movers`]: only those that left their block, and those that must make room. The order inside
+//!   a block becomes stale.
+//! * [`full`]: all particles, by block (Morton order) and cell, when particles came or went, or
+//!   when more than half left their block.
 //!
-//! A plan is made without a change to the world, so that particles outside the grid are an error that changes nothing. Both
-//! ways depend on positions and on the order of particles alone, not on slots of the grid, its policy or threads.
+//! A plan is made without a change to the world, so that particles outside the grid are an error
+//! that changes nothing. Both ways depend on positions and on the order of particles alone, not on
+//! slots of the grid, its policy or threads.
 
 pub mod full;
 pub mod movers;
@@ -30,10 +34,10 @@ use movers::{Regrouper, plan_moves};
 /// What memory is for, if there is none.
 const SORTING: &str = "the buffers of the sort";
 
-/// Words of marks that a thread looks at together.
+/// Words of marks that a thread checks at a time.
 const WORDS: usize = 64;
 
-/// Plan and buffers of the sort, kept from step to step.
+/// Plan and buffers of the sort, reused from step to step.
 #[derive(Debug, Default)]
 pub struct Sorting<const D: usize> {
     plan: Plan<D>,
@@ -41,14 +45,14 @@ pub struct Sorting<const D: usize> {
     regrouper: Regrouper<D>,
 }
 
-/// Runs that there will be, and how the particles get there.
+/// The new runs, and the moves of particles that make them.
 #[derive(Debug, Default)]
 pub struct Plan<const D: usize> {
     /// Runs of all bodies; those in new blocks have no valid slot.
     runs: Vec<Run>,
     /// For each run the key of its block.
     keys: Vec<Key<D>>,
-    /// Moves of all bodies, with places counted from the first particle of the body.
+    /// Moves of all bodies, with indices that count from the first particle of the body.
     moves: Moves,
     /// For each body the ends of its runs and of its moves.
     ends: Vec<(usize, MovesEnd)>,
@@ -69,7 +73,7 @@ impl<const D: usize> Plan<D> {
         reserve(&mut self.moves.to, particle_count(bodies), SORTING)
     }
 
-    /// Adds a run of the body in hand.
+    /// Adds a run of the current body.
     fn push(&mut self, run: Run, key: Key<D>) -> Result<()> {
         reserve(&mut self.runs, 1, SORTING)?;
         reserve(&mut self.keys, 1, SORTING)?;
@@ -78,7 +82,7 @@ impl<const D: usize> Plan<D> {
         Ok(())
     }
 
-    /// Ends the body in hand.
+    /// Ends the current body.
     fn end_body(&mut self) {
         self.ends.push((self.runs.len(), self.moves.end()));
     }
@@ -114,7 +118,7 @@ pub fn locate<const D: usize>(
     Ok(())
 }
 
-/// Makes the blocks that the plan needs, moves the particles and deals the runs out to tiles.
+/// Makes the blocks that the plan needs, moves the particles and assigns the runs to tiles.
 fn carry_out<const D: usize>(
     bodies: &mut [Body],
     background: &mut Background<D>,
@@ -150,7 +154,8 @@ struct Near<'a, const D: usize> {
     options: &'a Options,
 }
 
-/// Block of a particle and the number of its cell in the block; None if it is too far away or not finite.
+/// Block of a particle and the number of its cell in the block; None if it is too far away or not
+/// finite.
 #[inline(always)]
 fn block_and_cell<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32)> {
     let xi = space.between_walls(x);
@@ -218,7 +223,8 @@ pub fn check_radii(bodies: &[Body], options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Marks every particle that may have left the block of its run, or the box of a static grid, and takes other marks away.
+/// Marks every particle that may have left the block of its run, or the box of a static grid, and
+/// clears the other marks.
 fn mark_moved<const D: usize>(
     bodies: &mut [Body],
     background: &Background<D>,
@@ -258,7 +264,8 @@ fn sure_inside<const D: usize>(
     for d in 0..D {
         let lowest = f64::from(key.at[d]) * EDGE as f64 + space.first_offset;
         let edge = |cells: f64| space.origin[d] + (lowest + cells) * space.spacing;
-        // positions, their differences to the origin and their quotients by the spacing are each exact to 2^-53
+        // positions, their differences to the origin and their quotients by the spacing are each
+        // exact to 2^-53
         let scale = space.origin[d].abs() + (lowest.abs() + EDGE as f64) * space.spacing;
         let margin = 64.0 * f64::EPSILON * scale;
         (low[d], high[d]) = (edge(0.0) + margin, edge(EDGE as f64) - margin);
@@ -269,7 +276,8 @@ fn sure_inside<const D: usize>(
     (low, high)
 }
 
-/// Marks the particles of a range whose positions are not between the corners; `words` begins with the mark of particle `first`.
+/// Marks the particles of a range whose positions are not between the corners; `words` begins with
+/// the mark of particle `first`.
 fn mark_run<const D: usize>(
     columns: &[&[f64]; D],
     (low, high): &([f64; D], [f64; D]),

@@ -2,24 +2,42 @@
 //!
 //! | | stage | produces | file |
 //! |---|---|---|---|
-//! | 0 | time step | how far may we go | [`time_step`] |
-//! | 1 | locate | runs, tiles, active blocks | [`locate`](mod@locate) |
-//! | 1b | keep the start | a copy of the particles, where retries are allowed | [`retry`] |
-//! | 2 | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`](mod@particles_to_grid) |
-//! | 2b | apply the tractions | f_i | [`apply_tractions`](mod@apply_tractions) |
-//! | 3 | update the grid | v_i, Δv_i | [`update_grid`](mod@update_grid) |
-//! | 4 | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`](mod@apply_boundaries) |
-//! | 4b | filter the velocities | the velocities that particles take in XPIC and FMPM | [`filter_velocities`](mod@filter_velocities) |
-//! | 4c | average the dilation | tr L_p of bodies with F-bar | [`average_dilation`](mod@average_dilation) |
-//! | 5 | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`](mod@grid_to_particles) |
-//! | 6 | update the strain | Δε_p, V_p, F_p, rotated σ_p, in scratch | [`update_strain`](mod@update_strain) |
-//! | 6b | update the domain | edges of contiguous-particle GIMP | [`update_domain`](mod@update_domain) |
-//! | 7 | update the stress | σ_p, state, wave speed, in scratch | [`update_stress`](mod@update_stress) |
-//! | 8 | commit | particles take over what 6 and 7 left in scratch | [`commit`](mod@commit) |
+//! | 0 | time step | the stable dt, before the step | [`time_step`] |
+//! | 1 | locate | runs, tiles, active blocks | [`locate`] |
+//! | 1b | save the start | a copy of the particles, where retries are allowed | [`retry`] |
+//! | 2 | particles to grid | m_i, (mv)_i, f_i | [`particles_to_grid`] |
+//! | 2b | apply the tractions | f_i | [`apply_tractions`] |
+//! | 3 | update the grid | v_i, Δv_i | [`update_grid`] |
+//! | 4 | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`] |
+//! | 4b | filter the velocities | velocities of particles in XPIC, FMPM | [`filter_velocities`] |
+//! | 4c | average the dilation | the mean tr L_p, of bodies with F-bar | [`average_dilation`] |
+//! | 5 | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`] |
+//! | 6 | update the strain | Δε_p, V_p, F_p, rotated σ_p, in scratch | [`update_strain`] |
+//! | 6b | update the domain | edges of contiguous-particle GIMP, in scratch | [`update_domain`] |
+//! | 7 | update the stress | σ_p, state, wave speed, in scratch | [`update_stress`] |
+//! | 8 | commit | particles take over what 6, 6b and 7 left in scratch | [`commit`] |
 //!
-//! Stages 5 to 8 go over a chunk of particles while it is in cache, in one [`pass`](mod@pass). The orders
-//! below are the only functions that see all [`parts`] of a world; a stage takes those that it reads and
-//! writes. [`naive`] is the same step as the textbook writes it.
+//! Stages 5 to 8 work on a chunk of particles while it is in cache, in one [`pass`](mod@pass). The
+//! orders below are the only functions that see all [`parts`] of a world; a stage takes those that
+//! it reads and writes. [`naive`] is the same step as the textbook writes it.
+//!
+//! Three words for groups of particles: a *run* is the particles of one body in one block;
+//! a *chunk* is up to 512 particles, which go through a pass together; a *batch* is up to 32
+//! particles of a run, which go through a kernel together, and also the points of one call of a
+//! model.
+//!
+//! [`locate`]: mod@locate
+//! [`particles_to_grid`]: mod@particles_to_grid
+//! [`apply_tractions`]: mod@apply_tractions
+//! [`update_grid`]: mod@update_grid
+//! [`apply_boundaries`]: mod@apply_boundaries
+//! [`filter_velocities`]: mod@filter_velocities
+//! [`average_dilation`]: mod@average_dilation
+//! [`grid_to_particles`]: mod@grid_to_particles
+//! [`update_strain`]: mod@update_strain
+//! [`update_domain`]: mod@update_domain
+//! [`update_stress`]: mod@update_stress
+//! [`commit`]: mod@commit
 
 pub mod apply_boundaries;
 pub mod apply_tractions;
@@ -89,28 +107,28 @@ pub fn map<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     Ok(())
 }
 
-/// Every particle into the run of its block.
+/// Sorts every particle into the run of its block.
 fn sort<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     let Parts { bodies, background, method, buffers, freshness, team, .. } = world;
     check_radii(bodies, &method.options)?;
     locate(bodies, background, &method.options, &mut buffers.sorting, freshness, team)
 }
 
-/// Mass, momentum and force, loads of the time `at` [s] included, to the grid.
+/// Maps mass, momentum and force to the grid, with the loads of the time `at` [s].
 fn scatter<const D: usize>(world: &mut Parts<D>, at: f64) {
     let Parts { bodies, background, method, conditions, team, .. } = world;
     particles_to_grid(background, bodies, method, team);
     apply_tractions(&mut conditions.tractions, bodies, background, method, at);
 }
 
-/// Velocities at the end of the step.
+/// Updates the grid to the velocities at the end of the step.
 fn update<const D: usize>(world: &mut Parts<D>, dt: f64) {
     let gravity = world.gravity(world.clock.time + 0.5 * dt); // [CND-2]
     let Parts { background, method, team, .. } = world;
     update_grid(&mut background.nodes, gravity, method, team, dt);
 }
 
-/// Walls and prescribed velocities.
+/// Applies walls and prescribed velocities.
 fn hold<const D: usize>(world: &mut Parts<D>, dt: f64) {
     let Parts { background, conditions, method, buffers, team, clock, .. } = world;
     let when = (clock.time, dt);
@@ -129,7 +147,8 @@ fn move_grid<const D: usize>(world: &mut Parts<D>, dt: f64) {
     filter_velocities(bodies, background, method, conditions, &mut buffers.filtering, team);
 }
 
-/// A pass over the particles; `strained` is the time over which gradients strain them [s], if they do.
+/// A pass over the particles; `strained` is the time over which gradients strain them [s], if they
+/// do.
 fn take<const D: usize>(
     world: &mut Parts<D>,
     gather: Gather,
@@ -142,23 +161,25 @@ fn take<const D: usize>(
     (method.kernels.pass)(bodies, background, method, team, &Pass { gather, dt, then })
 }
 
-/// The mean rates of volume for bodies with F-bar.
+/// Averages the rates of volume of bodies with F-bar.
 fn average<const D: usize>(world: &mut Parts<D>, gather: Gather) {
     let Parts { bodies, background, method, buffers, team, .. } = world;
     average_dilation(bodies, background, method, &mut buffers.patches, team, gather);
 }
 
-/// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118 (1994) 179–196,
-/// doi:10.1016/0045-7825(94)90112-0.
+/// Update stress last. D. Sulsky, Z. Chen, H. L. Schreyer, Comput. Methods Appl. Mech. Engrg. 118
+/// (1994) 179–196, doi:10.1016/0045-7825(94)90112-0.
 fn usl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
     average(world, Gather::Gradient);
     take(world, Gather::Everything, dt, Some(dt))
 }
 
-/// Modified update stress last: the new particle velocities, with their affine part, are mapped to the grid again, and the velocity
-/// gradient is taken of those. (Without the affine part the gradient would come of a field filtered twice and positions of one filtered
-/// once: sand would swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun. 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
+/// Modified update stress last: the new particle velocities, with their affine part, are mapped to
+/// the grid again, and the velocity gradient is taken of those. (Without the affine part the
+/// gradient would come of a field filtered twice and positions of one filtered once: sand would
+/// swell by 2 to 3 % in a collapse.) D. Sulsky, S.-J. Zhou, H. L. Schreyer, Comput. Phys. Commun.
+/// 87 (1995) 236–252, doi:10.1016/0010-4655(94)00170-7.
 fn musl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     move_grid(world, dt);
     take(world, Gather::Velocity, dt, None);
@@ -170,7 +191,8 @@ fn musl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     take(world, Gather::PositionAndGradient, dt, Some(dt))
 }
 
-/// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180 (2002) 383–403, doi:10.1006/jcph.2002.7103.
+/// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180
+/// (2002) 383–403, doi:10.1006/jcph.2002.7103.
 fn usf<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     let outcome = stress_of_start(world, dt);
     move_grid(world, dt);
@@ -178,7 +200,8 @@ fn usf<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     outcome
 }
 
-/// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn, CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
+/// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn,
+/// CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
 fn usavg<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     let first = stress_of_start(world, 0.5 * dt);
     move_grid(world, dt);

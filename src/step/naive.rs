@@ -1,4 +1,5 @@
-//! The step as the textbook writes it: the oracle of every fast kernel. No blocks, no tiles, no threads.
+//! The step as the textbook writes it: the oracle of every fast kernel. No blocks, no tiles, no
+//! threads.
 
 pub mod nodes;
 
@@ -10,7 +11,8 @@ use nodes::{
     near, reaches_behind_wall, scatter, strain, walled,
 };
 
-/// One step of length `dt` [s]; `update` gets each particle with its velocity gradient [1/s] and the time over which it holds.
+/// One step of length `dt` [s]; `update` gets each particle with its velocity gradient [1/s] and
+/// the time over which it holds.
 pub fn step<const D: usize>(
     s: Setup<'_>,
     particles: &mut [Particle<D>],
@@ -79,7 +81,8 @@ pub fn step<const D: usize>(
     }
 }
 
-/// The velocities that particles take in XPIC and FMPM; in the latter they are those of the grid too.
+/// The velocities that particles take in XPIC and FMPM; in the latter they are those of the grid
+/// too.
 fn filter_grid<const D: usize>(s: Setup<'_>, particles: &[Particle<D>], grid: &mut Grid<D>) {
     let xpic = s.0.transfer == TransferKind::Xpic;
     for n in grid.values_mut() {

@@ -24,7 +24,8 @@ pub struct Options {
     pub shape: ShapeKind,
     /// Transfer scheme.
     pub transfer: TransferKind,
-    /// Rate at which PIC damps FLIP [1/s]: 0 is FLIP, infinity is PIC. Used by [`TransferKind::PicFlip`].
+    /// Rate at which PIC damps FLIP [1/s]: 0 is FLIP, infinity is PIC. Used by
+    /// [`TransferKind::PicFlip`].
     pub pic_rate: f64,
     /// Order of the stages.
     pub order: StepOrder,
@@ -42,13 +43,15 @@ pub struct Options {
     pub box_max: [f64; 3],
     /// What shape functions do next to walls.
     pub wall_treatment: WallTreatment,
-    /// Whether x is a radius and y the axis of rotational symmetry; volumes, masses and forces are then per radian.
+    /// Whether x is a radius and y the axis of rotational symmetry; volumes, masses and forces are
+    /// then per radian.
     pub axisymmetric: bool,
     /// Terms of the filter of [`TransferKind::Xpic`] and [`TransferKind::Fmpm`]; 0: the default, 2.
     pub filter_order: i32,
     /// Whether particles carry a body force.
     pub body_force: bool,
-    /// How often a step is repeated smaller if a material fails or asks for that; 0: never, a failure poisons the world.
+    /// How often a step is repeated smaller if a material fails or requests that; 0: never, a
+    /// failure poisons the world.
     pub retries: i32,
 }
 
@@ -80,7 +83,7 @@ impl Default for Options {
 /// Terms of a filter if the host does not care.
 const FILTER_ORDER: i32 = 2;
 
-/// Most retries of a step; each at least halves it or does what the material asks for.
+/// Most retries of a step; each at least halves it or takes what the material requests.
 const MOST_RETRIES: i32 = 20;
 
 /// Most blocks of a static grid.
@@ -177,7 +180,7 @@ impl Options {
         self.wall_treatment == WallTreatment::Modified && self.shape != ShapeKind::Linear
     }
 
-    /// The place of the grid, without walls.
+    /// Where the grid stands in space, without walls.
     pub fn space<const D: usize>(&self) -> Space<D> {
         let reach = match self.wall_treatment {
             WallTreatment::Plain => self.shape.wall_reach(),
@@ -276,7 +279,7 @@ pub fn check_damping(damping: f64) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// A plane world with something in each place that two dimensions ignore.
+    /// A plane world with something in each component that two dimensions ignore.
     fn careless() -> Options {
         Options {
             dimension: 2,

@@ -1,12 +1,15 @@
-//! Stage 2, particles to grid: m_i = Σ w m, (mv)_i = Σ w m (v + C r), f_i = −Σ V σ ∇w with r = x_i − x_p.
+//! Stage 2, particles to grid: m_i = Σ w m, (mv)_i = Σ w m (v + C r), f_i = −Σ V σ ∇w with
+//! r = x_i − x_p.
 //!
-//! The particles of a block add into the block's tile; then every block pulls from the tiles that reach it, in a fixed order.
+//! The particles of a block add into the block's tile; then every block pulls from the tiles that
+//! reach it, in a fixed order.
 //!
-//! Mass, momentum and force go in one pass over nodes of eight lanes, [m, mv; –, f]. With the weights w_n, their slopes w'_n and
-//! the pairs c_n = [r_n w_n; w'_n] of an axis, a particle gives the node n of an axis w_n B + c_n G: its value B = [m, m v; 0] and
-//! the column G = [0, m h C_d; –, −V σ_d / h] of affine matrix and stress. The axes nest (see [`Axes`]). Eight particles share the
-//! arithmetic before the nodes. Cost per particle, quadratic in 3D: 62 products and 63 sums of eight lanes, 27 nodes read and
-//! written, 23 doubles read.
+//! Mass, momentum and force go in one pass over nodes of eight lanes, [m, mv; –, f]. With the
+//! weights w_n, their slopes w'_n and the pairs c_n = [r_n w_n; w'_n] of an axis, a particle adds
+//! to the node n of an axis w_n B + c_n G: its value B = [m, m v; 0] and the column G = [0, m h
+//! C_d; –, −V σ_d / h] of affine matrix and stress. The axes nest (see [`Axes`]). Eight particles
+//! share the arithmetic before the nodes. Cost per particle, quadratic in 3D: 62 products and 63
+//! sums of eight lanes, 27 nodes read and written, 23 doubles read.
 
 use std::marker::PhantomData;
 
@@ -65,8 +68,8 @@ pub fn particles_to_grid<const D: usize>(
     });
 }
 
-/// Maps the momentum of the particles into the increments: that of their new velocities (second scatter of
-/// MUSL), or of those that go through a filter.
+/// Maps the momentum of the particles into the increments: that of their new velocities (second
+/// scatter of MUSL), or of those that go through a filter.
 pub fn velocities_to_grid<const D: usize>(
     background: &mut Background<D>,
     bodies: &[Body],
@@ -118,8 +121,8 @@ pub fn scatter<S: ShapeFunction<N>, const N: usize, const D: usize>(
 /// Particles that one thread takes at least.
 const GRAIN: u32 = 4096;
 
-/// Tiles to fill, the first of them number `first`. They are divided by particles, `start` being their
-/// running count, so that a thin layer and a dense heap balance.
+/// Tiles to fill, the first of them number `first`. They are divided by particles, `start` being
+/// their running count, so that a thin layer and a dense heap balance.
 struct Filling<'a> {
     nodes: &'a mut [TileNode],
     tile_nodes: usize,
@@ -150,8 +153,9 @@ const BLOCKS: usize = 16;
 /// Most nodes of a block.
 const BLOCK_NODES: usize = block_nodes(3);
 
-/// Adds up, corner by corner, what the tiles around each block hold for its nodes, and writes the halves of each node. Tiles have left
-/// the caches since they were filled: those of the next block are prefetched while one is summed.
+/// Adds up, corner by corner, what the tiles around each block hold for its nodes, and writes the
+/// halves of each node. Tiles have left the caches since they were filled: those of the next block
+/// are prefetched while one is summed.
 struct Pull<'a, const D: usize> {
     tiles: &'a Tiles,
     around: &'a [Neighbours],
@@ -236,7 +240,8 @@ impl<S: ShapeFunction<N>, const N: usize, const D: usize> Kernel for ScatterTile
     }
 }
 
-/// Stencils of a batch, and what its particles give: value, and columns of affine matrix and stress.
+/// Stencils of a batch, and what its particles give: value, and columns of affine matrix and
+/// stress.
 struct Batch<V, const N: usize, const D: usize> {
     weights: [Weights<N, D>; GROUPS],
     corners: [[u32; LANES]; GROUPS],
@@ -348,7 +353,8 @@ impl<'a, const D: usize> Columns<'a, D> {
     }
 }
 
-/// Values, and columns of affine matrix and stress, of eight particles from k on; `radius` is their x.
+/// Values, and columns of affine matrix and stress, of eight particles from k on; `radius` is their
+/// x.
 #[inline(always)]
 fn payload<V: Vector, const D: usize>(
     job: &ScatterJob<'_, D>,
@@ -394,7 +400,8 @@ fn payload<V: Vector, const D: usize>(
     }
 }
 
-/// Adds the forces at the particles themselves to the values of eight: body forces, and in axial symmetry that of the hoop stress.
+/// Adds the forces at the particles themselves to the values of eight: body forces, and in axial
+/// symmetry that of the hoop stress.
 #[inline(always)]
 fn add_forces<V: Vector, const D: usize>(
     job: &ScatterJob<'_, D>,

@@ -1,4 +1,5 @@
-//! A world in parts. A stage takes the parts that it reads and writes; the orders alone see the whole.
+//! A world in parts. A stage takes the parts that it reads and writes; the orders alone see the
+//! whole.
 
 use std::sync::Arc;
 
@@ -50,7 +51,7 @@ impl Clock {
     }
 }
 
-/// What stages keep from step to step so that they do not allocate.
+/// Buffers of the stages, reused from step to step so that they do not allocate.
 #[derive(Default)]
 pub struct Buffers<const D: usize> {
     /// Of the sort.
@@ -137,7 +138,7 @@ impl<const D: usize> Parts<D> {
         self.conditions.gravity(self.method.options.gravity, time)
     }
 
-    /// What limits the next step, asked of the materials if nobody knows.
+    /// What limits the next step; the materials compute it if no step left it.
     pub fn limits(&self) -> Result<Limits> {
         match self.freshness.limits() {
             Some(limits) => Ok(limits),

@@ -30,7 +30,7 @@ pub struct Pass {
 pub enum Then {
     /// Nothing.
     Nothing,
-    /// Bodies with F-bar store the rates at which their particles grow; others are passed over.
+    /// Bodies with F-bar store the rates at which their particles grow; others are skipped.
     Rates,
     /// Strain and stress are updated.
     Stress(Moment),
@@ -47,7 +47,7 @@ pub struct Moment {
     pub dt: f64,
 }
 
-/// Where in a pass a chunk has arrived.
+/// The last stage of a pass that a chunk has finished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChunkStage {
     /// Nothing is done.
@@ -60,14 +60,14 @@ pub enum ChunkStage {
     Stressed,
 }
 
-/// Who is told about each chunk and stage, on the thread that works on it.
+/// Called for each chunk after each stage, on the thread that works on it.
 pub type Stopwatch = dyn Fn(ChunkStage) + Send + Sync;
 
-/// A chunk of a body's particles in a pass.
+/// A chunk of a body's particles in a pass, with what its stages read and write.
 pub struct ChunkWork<'c, 's> {
     /// The particles.
     pub chunk: &'s mut ChunkMut<'c>,
-    /// What the stages hand to each other.
+    /// What one stage leaves for the next.
     pub scratch: Scratch<'s>,
     /// Id of the body.
     pub body: i64,
@@ -77,8 +77,8 @@ pub struct ChunkWork<'c, 's> {
     pub material: &'s Material,
 }
 
-/// The copy of the grid around a block from which its particles gather, and the slot of the block, if there
-/// is one already.
+/// The copy of the grid around a block from which its particles gather, and the slot of the block,
+/// if there is one already.
 pub struct Copied<'a> {
     /// The copy.
     pub tile: &'a mut [TileNode],
@@ -125,7 +125,7 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
     outcome
 }
 
-/// The stages of a pass that do not know the shape function.
+/// The stages of a pass that do not depend on the shape function.
 fn after_gather<const D: usize>(
     work: &mut ChunkWork<'_, '_>,
     method: &Method<D>,
@@ -150,7 +150,8 @@ fn after_gather<const D: usize>(
     }
 }
 
-/// Strain and stress of a chunk over a moment, in scratch: what an implicit solver calls as often as it likes.
+/// Strain and stress of a chunk over a moment, in scratch: what an implicit solver calls as often
+/// as it likes.
 pub fn evaluate<const D: usize>(
     work: &mut ChunkWork<'_, '_>,
     method: &Method<D>,
@@ -162,7 +163,7 @@ pub fn evaluate<const D: usize>(
 }
 
 impl<const D: usize> Method<D> {
-    /// Tells the stopwatch, if there is one, that a chunk has arrived at a stage.
+    /// Reports to the stopwatch, if there is one, that a chunk has finished a stage.
     #[inline]
     fn lap(&self, stage: ChunkStage) {
         if let Some(stopwatch) = &self.stopwatch {

@@ -1,7 +1,8 @@
-//! Stage 1b, where the host allows retries: keep what the step starts from; and the way back to it.
+//! Stage 1b, where the host allows retries: save what the step starts from, and restore it.
 //!
-//! Particles have been located, so their order, runs and blocks stay as they are. The copy costs as much memory as the columns, and the
-//! time to write them once in a step. What the grid held is not kept: it is mapped anew when somebody asks.
+//! Particles have been located, so their order, runs and blocks stay as they are. The copy costs as
+//! much memory as the columns, and the time to write them once in a step. The grid is not saved: it
+//! is mapped anew when it is read.
 
 use crate::boundary::Conditions;
 use crate::error::Result;
@@ -29,7 +30,7 @@ pub fn save_start(bodies: &[Body], conditions: &mut Conditions, start: &mut Star
     Ok(())
 }
 
-/// Brings them back.
+/// Restores them.
 pub fn back_to_start(bodies: &mut [Body], conditions: &mut Conditions, start: &Start) {
     for (body, start) in bodies.iter_mut().zip(&start.columns) {
         body.particles.restore_columns(start);

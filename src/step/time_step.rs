@@ -1,9 +1,10 @@
 //! Stage 0: how far may we go?
 //!
-//! The largest dt with (c + |v| + |g| dt) dt ≤ CFL h and dt ≤ CFL h² / (2 D ν), with the wave speed c and the kinematic diffusivity ν
-//! of the materials, after R. Courant, K. Friedrichs, H. Lewy, Math. Ann. 100 (1928) 32–74; the term with gravity g keeps what is at
-//! rest and carries no wave from falling through a wall in one step. Each stress update leaves the limits of the next step; after
-//! the host changed particles they are asked of the materials anew.
+//! The largest dt with (c + |v| + |g| dt) dt ≤ CFL h and dt ≤ CFL h² / (2 D ν), with the wave speed
+//! c and the kinematic diffusivity ν of the materials, after R. Courant, K. Friedrichs, H. Lewy,
+//! Math. Ann. 100 (1928) 32–74; the term with gravity g prevents what is at rest and carries no
+//! wave from falling through a wall in one step. Each stress update leaves the limits of the next
+//! step; after the host changed particles the materials compute them anew.
 
 use lahar_plugin_abi::LAHAR_POINT_FAILED;
 
@@ -23,7 +24,7 @@ pub struct Limits {
     pub speed: f64,
     /// Largest kinematic diffusivity [m²/s].
     pub diffusivity: f64,
-    /// Longest step that a material asked for [s]; infinity if none did.
+    /// Longest step that a material requested [s]; infinity if none did.
     pub wanted_dt: f64,
 }
 
@@ -43,18 +44,21 @@ impl Limits {
         }
     }
 
-    /// The stable time step [s] with gravity `g` [m/s²]; infinity if nothing moves, pulls or resists.
+    /// The stable time step [s] with gravity `g` [m/s²]; infinity if nothing moves, pulls or
+    /// resists.
     pub fn stable_dt(&self, options: &Options, g: f64) -> f64 {
-        let (h, s) = (options.spacing, self.speed);
-        let wave = 2.0 * options.cfl * h / (s + (s * s + 4.0 * g * options.cfl * h).sqrt()); // [CFL-1]
-        let viscous = options.cfl * h * h / (2.0 * options.dimension as f64 * self.diffusivity); // [CFL-2]
+        let (h, cfl, s) = (options.spacing, options.cfl, self.speed);
+        let wave = 2.0 * cfl * h / (s + (s * s + 4.0 * g * cfl * h).sqrt()); // [CFL-1]
+        let axes = options.dimension as f64;
+        let viscous = cfl * h * h / (2.0 * axes * self.diffusivity); // [CFL-2]
         wave.min(viscous).min(self.wanted_dt)
     }
 }
 
 /// The stable time step [s] at the time `now` [s], from the limits of particles and materials.
 ///
-/// What comes by tables counts with its largest value in the longest step that could be taken without it.
+/// What comes by tables counts with its largest value in the longest step that could be taken
+/// without it.
 pub fn stable_dt(limits: &Limits, options: &Options, conditions: &Conditions, now: f64) -> f64 {
     let free = limits.stable_dt(options, 0.0);
     let gravity = match &conditions.gravity {
@@ -65,7 +69,7 @@ pub fn stable_dt(limits: &Limits, options: &Options, conditions: &Conditions, no
     conditions.limit(now, dt, options.cfl * options.spacing)
 }
 
-/// Asks the materials for wave speeds and diffusivities of the present state.
+/// Computes the limits from the materials' wave speeds and diffusivities in the present state.
 pub fn limits_of_state<const D: usize>(bodies: &[Body], spacing: f64) -> Result<Limits> {
     let mut limits = Limits::default();
     for body in bodies {

@@ -1,12 +1,14 @@
 //! Stage 3, the grid: v_i = (mv)_i / m_i + dt (f_i / m_i + g), with local non-viscous damping.
 //!
-//! Every node with any mass takes part, however light: m_i and (mv)_i carry the same small weight, so that their quotient is as good as
-//! any, and a cut-off would leave holes in the velocity gradient of a body that flies by. The quotient f_i / m_i of a light node
-//! does grow, as ∇w / w. Quadratic shapes bear it, since their gradient vanishes with the weight; linear ones do not, and
-//! want FLIP with MUSL, whose second mapping takes the light nodes out of the velocity gradient.
+//! Every node with any mass takes part, however light: m_i and (mv)_i carry the same small weight,
+//! so that their quotient is as good as any, and a cut-off would leave holes in the velocity
+//! gradient of a body that flies by. The quotient f_i / m_i of a light node does grow, as ∇w / w.
+//! Quadratic shapes bear it, since their gradient vanishes with the weight; linear ones do not, and
+//! need FLIP with MUSL, whose second mapping takes the light nodes out of the velocity gradient.
 //!
-//! Damping takes α |F| from every component of the force F = f + m g, against the velocity: F ← F − α |F| sgn(v).
-//! P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods in Engineering Rock Mechanics (1987) 129–163.
+//! Damping takes α |F| from every component of the force F = f + m g, against the velocity:
+//! F ← F − α |F| sgn(v). P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods
+//! in Engineering Rock Mechanics (1987) 129–163.
 
 use super::parts::Method;
 use crate::background::nodes::pair_of_vectors;
@@ -73,7 +75,8 @@ impl Kernel for Update<'_> {
     }
 }
 
-/// 1 / m; zero for an empty node, whose velocity is then zero too. A mass that has no inverse counts as none.
+/// 1 / m; zero for an empty node, whose velocity is then zero too. A mass that has no inverse
+/// counts as none.
 #[inline(always)]
 fn inverse(m: f64) -> f64 {
     if m >= f64::MIN_POSITIVE { 1.0 / m } else { 0.0 }

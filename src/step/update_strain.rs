@@ -1,10 +1,13 @@
-//! Stage 6, strain: Δε = dt sym L, the volume, F ← (I + dt L) F, and the objective rotation of the start stress. All of it goes into
-//! scratch: particles stay as they are until a [`commit`](super::commit).
+//! Stage 6, strain: Δε = dt sym L, the volume, F ← (I + dt L) F, and the objective rotation of the
+//! start stress. All of it goes into scratch: particles stay as they are until a
+//! [`commit`](super::commit).
 //!
-//! The stress is turned before the material adds its increment (incrementally objective update, T. J. R. Hughes, J. Winget,
-//! Int. J. Numer. Meth. Engng 15 (1980) 1862–1867, doi:10.1002/nme.1620151210), as the model asks: by exp(W dt), W = skw L, instead
-//! of the midpoint rule there, which makes the Jaumann rate, or by the increment of the rotation R in F = R U, which makes that of
-//! A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965) 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
+//! The stress is turned before the material adds its increment (incrementally objective update, T.
+//! J. R. Hughes, J. Winget, Int. J. Numer. Meth. Engng 15 (1980) 1862–1867,
+//! doi:10.1002/nme.1620151210), as the model requires: by exp(W dt), W = skw L, instead of the
+//! midpoint rule there, which makes the Jaumann rate, or by the increment of the rotation R in
+//! F = R U, which makes that of A. E. Green, P. M. Naghdi, Arch. Rational Mech. Anal. 18 (1965)
+//! 251–281, doi:10.1007/BF00251666. The equations: docs/book/theory/strain.md.
 
 use super::parts::Method;
 use super::pass::ChunkWork;
@@ -20,7 +23,8 @@ use crate::tensor::{
     turned_between,
 };
 
-/// Fills the chunk's scratch with what the material takes, and with volume and deformation gradient at the end.
+/// Fills the chunk's scratch with what the material takes, and with volume and deformation gradient
+/// at the end.
 pub fn update_strain<const D: usize>(work: &mut ChunkWork<'_, '_>, method: &Method<D>, dt: f64) {
     let isa = method.isa;
     copy_state(work);
@@ -40,8 +44,8 @@ pub fn update_strain<const D: usize>(work: &mut ChunkWork<'_, '_>, method: &Meth
     fill_inputs(scratch, &chunk.layout, |c| chunk.column(c), ids, method.options.spacing);
 }
 
-/// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the plane. Lanes without a point are zero: what
-/// the scratch held there before must not matter.
+/// The velocity gradients of the points k to `end`, at most eight; in two dimensions those in the
+/// plane. Lanes without a point are zero: what the scratch held there before must not matter.
 #[inline(always)]
 pub(super) fn gradient<V: Vector, const D: usize>(
     l: &[f64],
@@ -87,7 +91,8 @@ fn deformed_by<V: Vector>(f: &Rows<V>, l: &Rows<V>, dt: f64) -> Rows<V> {
     })
 }
 
-/// det(I + dt L), by which the volume of what carries F grows; not a number where a step turns a particle inside out.
+/// det(I + dt L), by which the volume of what carries F grows; not a number where a step turns a
+/// particle inside out.
 #[inline(always)]
 fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
     let step = each!(a in 3, b in 3 => {
@@ -97,7 +102,8 @@ fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
     ratio.sqrt().mul_add(V::splat(0.0), ratio)
 }
 
-/// Strain increment, start stress and volume; `F`: for particles that carry the deformation gradient.
+/// Strain increment, start stress and volume; `F`: for particles that carry the deformation
+/// gradient.
 struct Strain<'p, 'c, 's, const D: usize, const F: bool>(&'p mut ChunkWork<'c, 's>, f64);
 
 impl<const D: usize, const F: bool> Kernel for Strain<'_, '_, '_, D, F> {

@@ -1,4 +1,5 @@
-//! Stage 7, stress: the material updates a chunk at once, in scratch, and the engine checks the answer.
+//! Stage 7, stress: the material updates a chunk at once, in scratch, and the engine checks the
+//! answer.
 
 use lahar_plugin_abi::{LAHAR_POINT_FAILED, LAHAR_POINT_SMALLER_STEP, LAHAR_POINT_UNRELIABLE};
 
@@ -38,7 +39,7 @@ pub struct Outcome {
     unreliable: Option<Unreliable>,
 }
 
-/// The smallest step that a point asks for.
+/// The smallest step that a point requests.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
     /// Factor on the time step, in (0, 1) [–].
@@ -88,7 +89,7 @@ impl Outcome {
         self.unreliable
     }
 
-    /// The smallest step that a point asks for.
+    /// The smallest step that a point requests.
     pub fn wish(&self) -> Option<Wish> {
         self.wish
     }
@@ -119,7 +120,7 @@ pub struct Answer {
     unreliable: Option<Unreliable>,
 }
 
-/// Lets the material answer for a chunk. Particles stay as they are.
+/// Calls the material for a chunk. Particles stay as they are.
 pub fn update_stress<const D: usize>(
     work: &mut ChunkWork<'_, '_>,
     moment: Moment,
@@ -158,7 +159,8 @@ fn unreliable(work: &ChunkWork<'_, '_>) -> Option<Unreliable> {
     Some(Unreliable { points, body: work.body, particle: work.ids[work.chunk.first + k] })
 }
 
-/// The smallest step that a point of the chunk asks for; the place of a point whose factor makes no sense.
+/// The smallest step that a point of the chunk requests; the error is the index of a point whose
+/// factor is not above 0.
 fn smallest_wish(work: &ChunkWork<'_, '_>) -> Result<Option<Wish>, usize> {
     let s = &work.scratch;
     let n = work.chunk.len;

@@ -1,7 +1,8 @@
 //! Small tensors: the order of symmetric components and the objective rotation.
 //!
-//! Symmetric tensors are stored as xx, yy, zz, xy, yz, zx (tensor components, not engineering shears), gradients row-major.
-//! Two-dimensional worlds use the same shapes with zeros out of the plane. The formulas are written for one tensor or for eight.
+//! Symmetric tensors are stored as xx, yy, zz, xy, yz, zx (tensor components, not engineering
+//! shears), gradients row-major. Two-dimensional worlds use the same shapes with zeros out of the
+//! plane. The formulas are written for one tensor or for eight.
 
 mod polar;
 
@@ -35,7 +36,8 @@ pub fn symmetric_part(m: &Mat3) -> [f64; 6] {
     SYMMETRIC.map(|(a, b)| 0.5 * (m[(a, b)] + m[(b, a)]))
 }
 
-/// Angles of a step are small: up to √(1e-3) rad, the coefficients of the rotation come from their series, whose next term is below the round-off.
+/// Angles of a step are small: up to √(1e-3) rad, the coefficients of the rotation come from their
+/// series, whose next term is below the round-off.
 const SMALL: f64 = 1e-3;
 
 /// Rotation of a step: R = exp(W dt) with the spin W = skw L, by Rodrigues' formula
@@ -56,7 +58,8 @@ pub fn step_rotations<V: Vector>(l: &Rows<V>, dt: f64) -> Rows<V> {
     rodrigues(&w, factors(square(&w))) // [STR-5]
 }
 
-/// R s Rᵀ of eight symmetric tensors with the rotations of a step; in two dimensions those about z, for a third of the cost.
+/// R s Rᵀ of eight symmetric tensors with the rotations of a step; in two dimensions those about z,
+/// for a third of the cost.
 #[inline(always)]
 pub fn turned<V: Vector, const D: usize>(l: &Rows<V>, dt: f64, s: [V; 6]) -> [V; 6] {
     if D == 3 {
@@ -149,7 +152,8 @@ fn product<R: Real>(x: [R; 3], y: [R; 3]) -> R {
     x[2].mul_add(y[2], x[1].mul_add(y[1], x[0] * y[0]))
 }
 
-/// e^x; within round-off, and fast where |x| < ¼ in all lanes. A lane does not depend on the others.
+/// e^x; within round-off, and fast where |x| < ¼ in all lanes. A lane does not depend on the
+/// others.
 #[inline(always)]
 pub fn exp<V: Vector>(x: V) -> V {
     // Taylor's series up to x^12 / 12!

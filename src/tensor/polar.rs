@@ -1,17 +1,20 @@
-//! The polar decomposition F = R U of deformation gradients: the rotation R and the diagonal of the stretch U.
+//! The polar decomposition F = R U of deformation gradients: the rotation R and the diagonal of the
+//! stretch U.
 
 use super::{Rows, product, rotated, turned_in_plane};
 use crate::simd::{Real, Vector, each};
 
-/// Steps of the iteration, of which the first are scaled: for ratios of stretches up to 25, seven reach round-off; one to spare.
+/// Steps of the iteration, of which the first are scaled: for ratios of stretches up to 25, seven
+/// reach round-off; one to spare.
 const STEPS: usize = 8;
 const SCALED: usize = 5;
 
 /// R of F = R U, for one deformation gradient or eight; det F must be positive.
 ///
-/// Newton's iteration X ← (g X + X⁻ᵀ / g) / 2 from X = F, with g = √(|X⁻¹| / |X|) in the Frobenius norm while X is far from R:
-/// N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174, doi:10.1137/0907079. The number of steps
-/// is fixed, so that lanes do not depend on each other. Components that are zero, as those out of the plane, stay zero.
+/// Newton's iteration X ← (g X + X⁻ᵀ / g) / 2 from X = F, with g = √(|X⁻¹| / |X|) in the Frobenius
+/// norm while X is far from R: N. J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174,
+/// doi:10.1137/0907079. The number of steps is fixed, so that lanes do not depend on each other.
+/// Components that are zero, as those out of the plane, stay zero.
 #[inline(always)]
 pub fn polar_rotation<R: Real>(f: &Rows<R>) -> Rows<R> {
     let (half, one) = (R::splat(0.5), R::splat(1.0));
@@ -40,7 +43,8 @@ fn polar_angle<R: Real>(f: &Rows<R>) -> (R, R) {
     (c * inverse, s * inverse)
 }
 
-/// The diagonal of U = Rᵀ F [–]: by how much the edges of a box that lies along the axes become longer, its rotation set aside.
+/// The diagonal of U = Rᵀ F [–]: by how much the edges of a box that lies along the axes become
+/// longer, its rotation set aside.
 #[inline(always)]
 pub fn stretch_diagonal<R: Real>(f: &Rows<R>) -> [R; 3] {
     let r = polar_rotation(f);
@@ -101,7 +105,8 @@ mod tests {
     use crate::simd::{Isa, Kernel, LANES};
     use nalgebra::{Matrix3, Rotation3, Vector3};
 
-    /// Eight deformation gradients R U with known R, whose principal stretches reach from 0.2 to 5 along turned axes.
+    /// Eight deformation gradients R U with known R, whose principal stretches reach from 0.2 to 5
+    /// along turned axes.
     fn samples(round: usize, plane: bool) -> [(Matrix3<f64>, Matrix3<f64>); LANES] {
         std::array::from_fn(|l| {
             let angle = |c: usize| 3.0 * ((17 * round + 5 * l + 3 * c + 1) as f64).sin();

@@ -1,6 +1,7 @@
-//! Transfer schemes: what a particle gives to the grid and what it keeps of what comes back.
+//! Transfer schemes: what a particle adds to the grid and what it takes from it.
 //!
-//! Every scheme shares one scatter, `w m (v + A r)`, and one gather; it differs in two per-particle formulas.
+//! Every scheme shares one scatter, `w m (v + A r)`, and one gather; it differs in two per-particle
+//! formulas.
 
 pub mod apic;
 pub mod filter;
@@ -42,12 +43,13 @@ impl TransferKind {
     }
 }
 
-/// What the gather brings to a particle, or to eight.
+/// What a particle, or eight, take from the grid in a gather.
 #[derive(Clone, Copy, Debug)]
 pub struct Received<R, const D: usize> {
     /// Σ w v.
     pub velocity: [R; D],
-    /// Σ w Δv, or what else stands in R1; Σ w v again if the transfer is affine and R1 is not asked for.
+    /// Σ w Δv, or what else stands in R1; Σ w v again if the transfer is affine and R1 is not
+    /// needed.
     pub increment: [R; D],
     /// Σ w v ⊗ (x_i − x_p); only meaningful if the transfer is affine.
     pub moment: [[R; D]; D],

@@ -1,8 +1,9 @@
 //! Blend of PIC and FLIP, given as a rate, so that results do not depend on the time step.
 //!
-//! FLIP: v_p ← v_p + Σ w Δv; PIC: v_p ← Σ w v. With the rate κ [1/s] the share of PIC in a step is α = 1 − exp(−κ dt), so that
-//! n steps of dt/n damp as much as one of dt. κ = 0 is FLIP, κ = ∞ is PIC.
-//! J. U. Brackbill, H. M. Ruppel, J. Comput. Phys. 65 (1986) 314–343, doi:10.1016/0021-9991(86)90211-1.
+//! FLIP: v_p ← v_p + Σ w Δv; PIC: v_p ← Σ w v. With the rate κ [1/s] the share of PIC in a step is
+//! α = 1 − exp(−κ dt), so that n steps of dt/n damp as much as one of dt. κ = 0 is FLIP, κ = ∞ is
+//! PIC. J. U. Brackbill, H. M. Ruppel, J. Comput. Phys. 65 (1986) 314–343,
+//! doi:10.1016/0021-9991(86)90211-1.
 
 use super::Received;
 use crate::simd::{Real, each};

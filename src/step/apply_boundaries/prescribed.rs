@@ -1,6 +1,7 @@
-//! Velocities prescribed on regions: the nodes of the box with any mass get the velocity of the end of the step, in the components that
-//! are prescribed, and what that changes is the reaction. Blocks outside the box are passed over. The nodes of a box are few beside
-//! the particles, so that one thread does it, in the order of the blocks.
+//! Stage 4, velocities prescribed on regions: the nodes of the box with any mass get the velocity
+//! of the end of the step, in the components that are prescribed, and what that changes is the
+//! reaction. Blocks outside the box are skipped. The nodes of a box are few beside the particles,
+//! so that one thread does it, in the order of the blocks.
 
 use super::Undamped;
 use crate::background::{Background, Record, block_nodes};
@@ -49,8 +50,8 @@ pub fn prescribe_again<const D: usize>(
     }
 }
 
-/// Calls `visit` with every component that a condition holds, and the velocity, increment and force of its
-/// node.
+/// Calls `visit` with every component that a condition holds, and the velocity, increment and force
+/// of its node.
 fn for_each_held<const D: usize>(
     background: &mut Background<D>,
     condition: &PrescribedVelocity,

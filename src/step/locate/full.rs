@@ -12,7 +12,7 @@ use crate::step::parts::particle_count;
 /// Buffers of the full sort.
 #[derive(Debug, Default)]
 pub struct Sorter<const D: usize> {
-    /// For each particle block × cells of a block + cell.
+    /// For each particle its block and cell as one number: block × cells of a block + cell.
     sort_key: Vec<u32>,
     order: Vec<u32>,
     count: Vec<u32>,
@@ -38,7 +38,8 @@ pub(super) fn plan_sort<const D: usize>(
     sort_bodies(bodies, sorter, plan)
 }
 
-/// Numbers the blocks in the order in which particles meet them; `sort_key` becomes number × cells of a block + cell.
+/// Numbers the blocks in the order in which particles meet them; `sort_key` becomes number × cells
+/// of a block + cell.
 fn number_blocks<const D: usize>(
     bodies: &[Body],
     near: Near<'_, D>,
@@ -78,7 +79,8 @@ fn number_of<const D: usize>(sorter: &mut Sorter<D>, key: &Key<D>) -> Result<u32
     Ok(new)
 }
 
-/// Sorts the owners along the Morton curve; `rank[number]` becomes the place of a block among them.
+/// Sorts the owners along the Morton curve; `rank[number]` becomes the position of a block among
+/// them.
 fn rank_owners<const D: usize>(sorter: &mut Sorter<D>) -> Result<()> {
     let Sorter { owners, sorted, rank, .. } = sorter;
     for list in [&mut *sorted, &mut *rank] {

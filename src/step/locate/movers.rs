@@ -1,7 +1,8 @@
 //! The plan that moves only particles that left their block, and those that stand in the way.
 //!
-//! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on; of each of them only the
-//! particles at the one end go to the other, since the order inside a run is free. They go in whole stretches.
+//! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on;
+//! of each of them only the particles at the one end go to the other, since the order inside a run
+//! is free. They go in whole stretches.
 
 use super::{Near, Plan, SORTING, block_and_cell_inside};
 use crate::background::index::Index;
@@ -12,12 +13,13 @@ use crate::memory::{refill, reserve};
 use crate::particles::{Body, RunStart, in_order};
 use crate::step::parts::particle_count;
 
-/// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those in blocks that are new to it.
+/// Buffers of the regrouping. The runs of a body have numbers: first those that it has, then those
+/// in blocks that are new to it.
 #[derive(Debug, Default)]
 pub struct Regrouper<const D: usize> {
     /// Number of the body's run in each slot of the grid.
     run_of: Vec<u32>,
-    /// Places of those who leave, in storage order.
+    /// Indices of the particles that leave their run (the movers), in storage order.
     movers: Vec<u32>,
     /// For each mover the number of the run that it goes to.
     targets: Vec<u32>,
@@ -36,12 +38,12 @@ pub struct Regrouper<const D: usize> {
     arrivals: Vec<u32>,
     /// For each run the end of its arrivals; before that the number of them, then their start.
     arrived: Vec<u32>,
-    /// Where the runs of the sequence start; one more at the end.
+    /// The starts of the runs of the sequence; one more at the end.
     starts: Vec<RunStart>,
 }
 
-/// Plans the moves of marked particles that did leave their block. False, with half a plan, if more than half of all particles did;
-/// an error names a particle that is outside the grid.
+/// Plans the moves of marked particles that did leave their block. False, with half a plan, if more
+/// than half of all particles did; an error names a particle that is outside the grid.
 pub(super) fn plan_moves<const D: usize>(
     bodies: &[Body],
     blocks: &Blocks<D>,
@@ -79,7 +81,8 @@ pub(super) fn plan_moves<const D: usize>(
     Ok(true)
 }
 
-/// Lists those who left their block, with the run that they go to. False if there are more than `most`.
+/// Lists the particles that left their block, with the run that they go to. False if there are more
+/// than `most`.
 fn find_movers<const D: usize>(
     body: &Body,
     blocks: &Blocks<D>,
@@ -138,7 +141,8 @@ fn new_run<const D: usize>(buffers: &mut Regrouper<D>, runs: usize, key: Key<D>)
     Ok(runs as u32 + number)
 }
 
-/// Counts the particles of each run after the moves, and puts the new runs in Morton order among the others.
+/// Counts the particles of each run after the moves, and puts the new runs in Morton order among
+/// the others.
 fn order_runs<const D: usize>(
     body: &Body,
     blocks: &Blocks<D>,

@@ -11,7 +11,8 @@ use std::{array::from_fn, collections::BTreeMap};
 pub type Vector<const D: usize> = SVector<f64, D>;
 /// A matrix in D dimensions.
 pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
-/// A particle: position, velocity, affine matrix, mass, volume, stress in the axes of the world and of the hoop, edges, body force, deformation gradient.
+/// A particle: position, velocity, affine matrix, mass, volume, stress in the axes of the world and
+/// of the hoop, edges, body force, deformation gradient.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub struct Particle<const D: usize> {
@@ -27,7 +28,8 @@ pub struct Particle<const D: usize> {
     pub f: Matrix3<f64>,
 }
 
-/// A node: mass, momentum, force, velocity, its increment, the velocity that particles take, and that gradients are taken of.
+/// A node: mass, momentum, force, velocity, its increment, the velocity that particles take, and
+/// that gradients are taken of.
 #[derive(Clone, Copy)]
 pub struct Node<const D: usize>(pub f64, pub [Vector<D>; 6]);
 /// The fields of a node.
@@ -107,7 +109,8 @@ pub fn walled<const D: usize>((o, walls): Setup<'_>, i: &[i64; D], v: Vector<D>)
     walls.iter().filter(acts).fold(v, |v, wall| wall.constrain(v.into()).into())
 }
 
-/// Masses, and what `give` gives to a node at the distance r, summed over the particles into momenta and forces.
+/// Masses, and what `give` gives to a node at the distance r, summed over the particles into
+/// momenta and forces.
 pub fn scatter<const D: usize>(
     s: Setup<'_>,
     particles: &[Particle<D>],
