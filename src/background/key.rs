@@ -35,12 +35,18 @@ pub fn morton_order<const D: usize>(a: &Key<D>, b: &Key<D>) -> Ordering {
     let (mut axis, mut highest) = (0, 0u32);
     for d in 0..D {
         let difference = flip(a[d]) ^ flip(b[d]);
-        if highest < difference && highest < (highest ^ difference) {
+        if has_higher_top_bit(difference, highest) {
             axis = d;
             highest = difference;
         }
     }
     flip(a[axis]).cmp(&flip(b[axis]))
+}
+
+/// Whether the highest bit that is set in a is above that of b: then a is larger, and a ^ b has it.
+#[inline(always)]
+fn has_higher_top_bit(a: u32, b: u32) -> bool {
+    b < a && b < (a ^ b)
 }
 
 /// Block and position in it of a node along one axis.

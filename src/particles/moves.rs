@@ -273,8 +273,20 @@ mod tests {
         }
     }
 
+    /// The picture at the top of `step/locate/movers.rs`.
     #[test]
-    fn who_stays_in_place_does_not_move() {
+    fn the_picture_of_three_runs_is_true() {
+        let row = b"aacabbbbbccaaacc";
+        let moves = regroup(b"abc", &[4, 5, 7], row);
+        let segment = |from, to, len| Segment { from, to, len };
+        assert_eq!(moves.segments, [segment(9, 11, 1), segment(10, 12, 1), segment(4, 9, 2)]);
+        assert_eq!(moves.from, [2, 11, 12, 13]);
+        assert_eq!(moves.to, [13, 2, 4, 5]);
+        assert_eq!(moved(row.to_vec(), &moves), b"aaaaaabbbbbccccc");
+    }
+
+    #[test]
+    fn particles_that_stay_at_their_index_do_not_move() {
         let mut moves = Moves::default();
         moves.refill(10..20, 8..17, &[12, 15], &[40]);
         let segment = |from, to, len| Segment { from, to, len };

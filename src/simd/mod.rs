@@ -129,6 +129,14 @@ pub fn prefetch<T>(list: &[T], index: usize) {
     let _ = (list, index);
 }
 
+/// The whole number nearest to x, for |x| < 2^51: doubles around 1.5 · 2^52 are whole, so that
+/// adding it rounds.
+#[inline(always)]
+fn nearest_whole(x: f64) -> f64 {
+    const ONLY_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2^52
+    (x + ONLY_WHOLE) - ONLY_WHOLE
+}
+
 impl Real for f64 {
     #[inline(always)]
     fn splat(x: f64) -> Self {
@@ -138,13 +146,11 @@ impl Real for f64 {
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b // without the instruction a fused product is a slow call
     }
-    /// Adding and subtracting 1.5 · 2^52 rounds to the nearest whole number. The baseline
-    /// instruction set has no rounding instruction, and the library call costs more than the rest
-    /// of a weight.
+    /// The baseline instruction set has no rounding instruction, and the library call costs more
+    /// than the rest of a weight.
     #[inline(always)]
     fn floor(self) -> Self {
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
-        let nearest = (self + WHOLE) - WHOLE;
+        let nearest = nearest_whole(self);
         if nearest > self { nearest - 1.0 } else { nearest }
     }
     #[inline(always)]

@@ -401,7 +401,13 @@ fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
         let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
         inside &= !start.less_than(low) & start.less_than(high);
     }
-    !inside & (u8::MAX >> (LANES - count))
+    !inside & first_lanes(count)
+}
+
+/// A bit for each of the first `count` lanes, of which there is at least one.
+#[inline(always)]
+fn first_lanes(count: usize) -> u8 {
+    u8::MAX >> (LANES - count)
 }
 
 /// Σ w R and, for each axis d, Σ c_d R over the nodes of a stencil, in units of the spacing.

@@ -296,9 +296,14 @@ fn mark_run<const D: usize>(
             }
         }
         if flags.iter().fold(0, |any, flag| any | flag) != 0 {
-            let bits = flags.iter().rev().fold(0, |bits, flag| bits << 1 | flag);
-            words[(k - first) / 64] |= bits << (k % 64);
+            words[(k - first) / 64] |= packed(&flags) << (k % 64);
         }
         k = stop;
     }
+}
+
+/// The word whose bit l is flag l, which is 0 or 1.
+#[inline(always)]
+fn packed(flags: &[u64; 64]) -> u64 {
+    flags.iter().rev().fold(0, |bits, flag| bits << 1 | flag)
 }

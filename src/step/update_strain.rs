@@ -98,8 +98,13 @@ fn growth<V: Vector>(l: &Rows<V>, dt: f64) -> V {
     let step = each!(a in 3, b in 3 => {
         l[a][b].mul_add(V::splat(dt), V::splat(if a == b { 1.0 } else { 0.0 }))
     });
-    let ratio = determinant(&step); // [STR-4]
-    ratio.sqrt().mul_add(V::splat(0.0), ratio)
+    invalid_if_negative(determinant(&step)) // [STR-4]
+}
+
+/// x, or not a number in lanes where x is negative, since the root of x is none there.
+#[inline(always)]
+fn invalid_if_negative<V: Vector>(x: V) -> V {
+    x.sqrt().mul_add(V::splat(0.0), x)
 }
 
 /// Strain increment, start stress and volume; `F`: for particles that carry the deformation

@@ -1,8 +1,30 @@
 //! The plan that moves only particles that left their block, and those that stand in the way.
 //!
-//! Runs keep the Morton order of their blocks. A run that grows or shrinks pushes the next ones on;
-//! of each of them only the particles at the one end go to the other, since the order inside a run
-//! is free. They go in whole stretches.
+//! Runs stay in the Morton order of their blocks. A run that grows or shrinks shifts the next ones;
+//! of each of them only the particles at one end move to the other end, since the order inside a
+//! run is free. Those with consecutive indices move as one [`Segment`](crate::particles::Segment).
+//!
+//! Three runs a, b and c; a letter is the run of a particle after the moves, a point a hole, a bar
+//! the start of a run. One particle leaves a for c, three leave c for a:
+//!
+//! ```text
+//! index   0  1  2  3  4  5  6  7  8  9 10 11 12 13 14 15
+//!
+//! before |a  a  c  a |b  b  b  b  b |c  c  a  a  a  c  c
+//!               ^                          ^  ^  ^          movers 2, 11, 12, 13: taken out
+//! holes  |a  a  .  a |b  b  b  b  b |c  c  .  .  .  c  c
+//!                                    >-----^                c starts at 11 now: segments 9 -> 11
+//!                                       >-----^             and 10 -> 12 fill two of its holes
+//! refill |a  a  .  a |b  b  b  b  b  .  . |c  c  .  c  c
+//!                     >--------------^                      b starts at 6 now: segment 4, 5 -> 9
+//! refill |a  a  .  a  .  . |b  b  b  b  b |c  c  .  c  c
+//!               ^     ^  ^                       ^          11, 12, 13 arrive in a, 2 in c
+//! after  |a  a  a  a  a  a |b  b  b  b  b |c  c  c  c  c
+//! ```
+//!
+//! The ends of a and b move up, so the runs are refilled from the last to the first ([`in_order`]):
+//! b moves onto 9 and 10 only when c is gone from there. Particles 0, 1, 3, 6, 7, 8, 14 and 15 do
+//! not move. The test `the_picture_of_three_runs_is_true` makes these moves.
 
 use super::{Near, Plan, SORTING, block_and_cell_inside};
 use crate::background::index::Index;
