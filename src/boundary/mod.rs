@@ -10,7 +10,7 @@ pub mod wall;
 
 pub use prescribed_velocity::{Prescribed, PrescribedVelocity};
 pub use region::BoxRegion;
-pub use registry::{Condition, Conditions, Entry, List, Listed};
+pub use registry::{Condition, Conditions, Entry, Holding, List, Listed};
 pub use table::Table;
 pub use traction::{Loaded, Surface, Traction};
 pub use wall::{Wall, WallKind};

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::wall::ROUND_OFF;
-use super::{BoxRegion, Condition, Table};
-use crate::background::{EDGE, Key, Space, block_nodes};
+use super::{BoxRegion, Condition, Holding, Table};
+use crate::background::{Background, EDGE, Key, Record, Space, block_nodes};
 use crate::error::{Error, Result};
 
 /// The component along x in [`PrescribedVelocity::components`].
@@ -101,5 +101,63 @@ impl Condition for Prescribed {
 
     fn largest_speed(&self, from: f64, until: f64) -> f64 {
         self.condition.velocity.largest(from, until)
+    }
+
+    /// Nodes of the box with any mass get the velocity of the end of the step in the components that are
+    /// prescribed; what that changes is the reaction. They are few beside the particles: one thread does it,
+    /// in the order of the blocks.
+    fn hold<const D: usize>(
+        &mut self,
+        background: &mut Background<D>,
+        &Holding { time, dt, undamped }: &Holding,
+    ) -> Option<[f64; 3]> {
+        let target = self.condition.velocity.at(time + dt);
+        let mut impulse = [0.0; 3];
+        for_each_held(&self.condition, background, |a, velocity, increment, force| {
+            let (mass, before) = (velocity.mass(), velocity.component(a));
+            let change = target[a] - before;
+            // once for each component of a node, whatever number of conditions hold it
+            if let Some(gravity) = undamped
+                && before != 0.0
+                && !increment.is_held(a)
+            {
+                increment.hold(a);
+                let whole = dt * (force.component(a) + mass * gravity[a]);
+                impulse[a] -= whole - mass * increment.component(a);
+            }
+            *velocity.component_mut(a) = target[a]; // [CND-3]
+            *increment.component_mut(a) += change;
+            impulse[a] += mass * change;
+        });
+        self.target = target;
+        Some(impulse)
+    }
+
+    fn hold_again<const D: usize>(&self, background: &mut Background<D>) {
+        for_each_held(&self.condition, background, |a, _, increment, _| {
+            *increment.component_mut(a) = self.target[a];
+        });
+    }
+}
+
+/// Calls `visit` with every component that a condition holds, and the velocity, increment and force
+/// of its node.
+fn for_each_held<const D: usize>(
+    condition: &PrescribedVelocity,
+    background: &mut Background<D>,
+    mut visit: impl FnMut(usize, &mut Record, &mut Record, &Record),
+) {
+    let Background { space, blocks, nodes, .. } = background;
+    for slot in blocks.owned() {
+        let first = slot * block_nodes(D);
+        condition.for_nodes_inside(space, &blocks.keys()[slot], |node| {
+            let node = first + node;
+            if nodes.velocity[node].mass() > 0.0 {
+                for a in (0..D).filter(|a| condition.holds(*a)) {
+                    let (v, dv) = (&mut nodes.velocity[node], &mut nodes.increment[node]);
+                    visit(a, v, dv, &nodes.force[node]);
+                }
+            }
+        });
     }
 }

@@ -2,7 +2,19 @@
 //! is a line of [`Conditions`] and an implementation of [`Condition`].
 
 use super::{Loaded, Prescribed, Table, Wall};
+use crate::background::Background;
 use crate::error::{Error, Result, Status};
+
+/// What a condition that holds nodes must know of the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Holding {
+    /// Time at the start of the step [s].
+    pub time: f64,
+    /// Its length [s].
+    pub dt: f64,
+    /// Gravity [m/s²] where local damping is on: the force that it took follows.
+    pub undamped: Option<[f64; 3]>,
+}
 
 /// What the registry asks of every kind of condition.
 pub trait Condition {
@@ -18,6 +30,19 @@ pub trait Condition {
     fn largest_speed(&self, _from: f64, _until: f64) -> f64 {
         0.0
     }
+
+    /// Changes velocities and increments of nodes, after the walls, and gives the momentum that the material
+    /// got [N s]; None if it does nothing to nodes here.
+    fn hold<const D: usize>(
+        &mut self,
+        _background: &mut Background<D>,
+        _step: &Holding,
+    ) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Does the same to second velocities, which stand in the increments.
+    fn hold_again<const D: usize>(&self, _background: &mut Background<D>) {}
 
     /// Whether it goes when this body goes.
     fn belongs_to(&self, _body: i64) -> bool {
@@ -132,6 +157,20 @@ macro_rules! conditions {
                     dt = dt.min(way / entry.condition.largest_speed(now, now + dt));
                 })+
                 dt
+            }
+
+            /// Lets all conditions hold the nodes; their forces are those of the step.
+            pub fn hold<const D: usize>(&mut self, background: &mut Background<D>, step: &Holding) {
+                $(for entry in self.$name.iter_mut() {
+                    if let Some(impulse) = entry.condition.hold(background, step) {
+                        entry.force = impulse.map(|impulse| impulse / step.dt);
+                    }
+                })+
+            }
+
+            /// The same for second velocities.
+            pub fn hold_again<const D: usize>(&self, background: &mut Background<D>) {
+                $(self.$name.iter().for_each(|entry| entry.condition.hold_again(background));)+
             }
 
             /// Forgets the conditions on a body that is removed.

@@ -1,17 +1,13 @@
 //! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the
-//! momentum; then come the velocities that are [`prescribed`].
+//! momentum; then come the conditions of other kinds that hold nodes, see [`Condition::hold`](crate::boundary::Condition::hold).
 //!
 //! A node that is held is not damped: its reaction is m Δv / dt − (f + m g), with the whole force,
 //! not with what local damping left of it.
 
-pub mod prescribed;
-
 use super::options::Options;
 use crate::background::{Background, Key, Nodes, Record, Space, block_nodes};
-use crate::boundary::{Conditions, Entry, Wall};
+use crate::boundary::{Conditions, Entry, Holding, Wall};
 use crate::parallel::{Cut, Team};
-
-use prescribed::{prescribe, prescribe_again};
 
 /// Blocks that one thread takes at least.
 const GRAIN: usize = 16;
@@ -41,7 +37,8 @@ pub fn apply_boundaries<const D: usize>(
         }
         entry.force = total.map(|impulse| impulse / dt); // [BND-4]
     }
-    prescribe(background, &mut conditions.prescribed, when, undamped);
+    conditions
+        .hold(background, &Holding { time, dt, undamped: undamped.map(|(gravity, _)| gravity) });
 }
 
 /// Where local damping is on: gravity [m/s²] and the step [s], of which the force without damping
@@ -131,7 +128,7 @@ pub fn hold_at_boundaries<const D: usize>(
             }
         });
     }
-    prescribe_again(background, &conditions.prescribed);
+    conditions.hold_again(background);
 }
 
 /// Applies a wall to the velocity of a record and gives the change.

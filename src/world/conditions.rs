@@ -19,12 +19,19 @@ impl World {
         Ok(on!(&mut self, s => &mut s.conditions))
     }
 
-    fn entry<C: Listed>(&self, id: i64) -> Result<&Entry<C>> {
-        C::list(self.conditions()).get(id)
+    /// Adds a checked condition of any kind and gives its id.
+    pub fn add_condition<C: Listed>(&mut self, condition: C) -> Result<i64> {
+        Ok(C::list_mut(self.conditions_mut()?).add(condition))
     }
 
-    fn remove<C: Listed>(&mut self, id: i64) -> Result<()> {
+    /// Removes a condition.
+    pub fn remove_condition<C: Listed>(&mut self, id: i64) -> Result<()> {
         C::list_mut(self.conditions_mut()?).remove(id)
+    }
+
+    /// A condition, and its force on the material in the last step [N].
+    pub fn condition<C: Listed>(&self, id: i64) -> Result<&Entry<C>> {
+        C::list(self.conditions()).get(id)
     }
 
     /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the options.
@@ -59,14 +66,14 @@ impl World {
 
     /// Removes a wall.
     pub fn remove_wall(&mut self, wall: i64) -> Result<()> {
-        self.remove::<Wall>(wall)?;
+        self.remove_condition::<Wall>(wall)?;
         on!(&mut self, s => s.walls_changed());
         Ok(())
     }
 
     /// Force of a wall on the material in the last step [N]; the force on the wall is the opposite.
     pub fn wall_reaction(&self, wall: i64) -> Result<[f64; 3]> {
-        Ok(self.entry::<Wall>(wall)?.force)
+        Ok(self.condition::<Wall>(wall)?.force)
     }
 
     /// Adds a prescribed velocity and gives its id.
@@ -76,17 +83,17 @@ impl World {
         let components = condition.components; // what is free must not limit the step
         condition.velocity = condition.velocity.keeping(|a| components >> a & 1 == 1);
         let target = condition.velocity.at(self.time());
-        Ok(self.conditions_mut()?.prescribed.add(Prescribed { condition, target }))
+        self.add_condition(Prescribed { condition, target })
     }
 
     /// Removes a prescribed velocity.
     pub fn remove_prescribed_velocity(&mut self, id: i64) -> Result<()> {
-        self.remove::<Prescribed>(id)
+        self.remove_condition::<Prescribed>(id)
     }
 
     /// Force of a prescribed velocity on the material in the last step [N].
     pub fn prescribed_velocity_reaction(&self, id: i64) -> Result<[f64; 3]> {
-        Ok(self.entry::<Prescribed>(id)?.force)
+        Ok(self.condition::<Prescribed>(id)?.force)
     }
 
     /// Adds a traction and gives its id.
@@ -103,14 +110,14 @@ impl World {
 
     /// Removes a traction.
     pub fn remove_traction(&mut self, id: i64) -> Result<()> {
-        self.remove::<Loaded>(id)?;
+        self.remove_condition::<Loaded>(id)?;
         on!(&mut self, s => s.freshness.loads_changed());
         Ok(())
     }
 
     /// Number of particles that carry a traction, their area [m²], and the force on the body in the last step [N].
     pub fn traction_force(&self, id: i64) -> Result<(usize, f64, [f64; 3])> {
-        let entry = self.entry::<Loaded>(id)?;
+        let entry = self.condition::<Loaded>(id)?;
         let surface = &entry.condition.surface;
         Ok((surface.ids.len(), surface.areas.iter().sum(), entry.force))
     }
