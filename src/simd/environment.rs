@@ -90,7 +90,7 @@ pub(crate) fn control() -> Control {
         })
     };
     #[cfg(target_arch = "x86_64")]
-    return Control(word(0, 2) << 32 | word(28, 4) & !0x3f); // x87 control word, MXCSR less its flags
+    return Control(word(0, 2) << 32 | word(28, 4) & !0x3f); // x87 control, MXCSR less its flags
     #[cfg(not(target_arch = "x86_64"))]
     return Control(word(0, 4)); // FPCR
 }
