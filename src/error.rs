@@ -1,6 +1,7 @@
 //! What can go wrong: one list of statuses, one error type.
 //!
-//! Positive statuses leave every object as it was; negative ones poison the object: it answers queries and can be freed.
+//! Positive statuses leave every object as it was; negative ones poison the object: it answers
+//! queries and can be freed.
 
 use crate::choice::choices;
 
@@ -23,27 +24,28 @@ choices! {
         MissingParameter = 5, "missing_parameter", LAHAR_ERROR_MISSING_PARAMETER;
         /// A parameter lies outside its hard bounds, or the model refuses the combination.
         OutOfBounds = 6, "out_of_bounds", LAHAR_ERROR_OUT_OF_BOUNDS;
-        /// No body, wall or plugin has this id.
+        /// No object has this id, or no item of a list has this index.
         NotFound = 7, "not_found", LAHAR_ERROR_NOT_FOUND;
-        /// A view is open that forbids the call.
+        /// A view is open that forbids the call; free it first.
         ViewOpen = 8, "view_open", LAHAR_ERROR_VIEW_OPEN;
-        /// The view's data belong to an earlier step.
+        /// Particles may have been reordered since the view was opened: by a step, or by a query
+        /// that mapped the grid anew.
         ViewStale = 9, "view_stale", LAHAR_ERROR_VIEW_STALE;
         /// Another thread is using the object.
         Busy = 10, "busy", LAHAR_ERROR_BUSY;
         /// The field can be read but not written.
         ReadOnly = 11, "read_only", LAHAR_ERROR_READ_ONLY;
-        /// This combination of options is not supported; the message names the nearest that is.
+        /// This combination of options is not supported; the message names the nearest one that is.
         Unsupported = 12, "unsupported", LAHAR_ERROR_UNSUPPORTED;
         /// An array is shorter than the result; the needed size is given.
         BufferTooSmall = 13, "buffer_too_small", LAHAR_ERROR_BUFFER_TOO_SMALL;
         /// The time step exceeds the stable one; nothing was done.
         StepTooLarge = 100, "step_too_large", LAHAR_ERROR_STEP_TOO_LARGE;
-        /// The host left a value in a particle field that is not finite, not positive where it must
-        /// be, or a position outside the grid; nothing was done.
+        /// A value that the host wrote to a particle field is not finite, or not positive where it
+        /// must be, or is a position outside the grid; nothing was done.
         NonFiniteInput = 101, "non_finite_input", LAHAR_ERROR_NON_FINITE_INPUT;
-        /// A particle stands outside the box of a static grid, or beyond the range of block
-        /// coordinates; nothing was done.
+        /// A particle is outside the box of a static grid, beyond the range of block coordinates,
+        /// or beyond the axis of symmetry; nothing was done.
         OutsideGrid = 102, "outside_grid", LAHAR_ERROR_OUTSIDE_GRID;
         /// A material failed or asked for a smaller time step; nothing was done. Only with the
         /// option `retries`.
@@ -56,13 +58,13 @@ choices! {
         PluginNotFound = 201, "plugin_not_found", LAHAR_ERROR_PLUGIN_NOT_FOUND;
         /// The file is not a plugin, or its tables break the rules.
         PluginInvalid = 202, "plugin_invalid", LAHAR_ERROR_PLUGIN_INVALID;
-        /// The plugin speaks another major version of the plugin ABI.
+        /// The plugin was built for another major version of the plugin ABI.
         PluginAbi = 203, "plugin_abi", LAHAR_ERROR_PLUGIN_ABI;
         /// The plugin refused to load.
         PluginRefused = 204, "plugin_refused", LAHAR_ERROR_PLUGIN_REFUSED;
         /// Threads could not be started, or the process was forked after they were.
         Threads = 205, "threads", LAHAR_ERROR_THREADS;
-        /// The memory for particles or grid is not to be had; nothing has changed.
+        /// There is not enough memory for particles or grid; nothing has changed.
         OutOfMemory = 206, "out_of_memory", LAHAR_ERROR_OUT_OF_MEMORY;
         /// A defect of lahar was caught; the object is poisoned.
         Panic = -1, "panic", LAHAR_ERROR_PANIC;
@@ -93,7 +95,8 @@ pub struct Place {
     pub suggested_dt: Option<f64>,
 }
 
-/// An error: a status for programs, a text for people (expected, received, what to do), and the place.
+/// An error: a status for programs, a text for people (expected, received, what to do), and the
+/// place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct Error {
@@ -116,7 +119,8 @@ impl Error {
         Self::new(Status::InvalidArgument, message)
     }
 
-    /// An unknown name: says what was looked for, the closest known name, and all known names if they are few.
+    /// An unknown name. The message has the name that was not found, the closest known name, and
+    /// all known names if they are few.
     pub fn unknown_name<'a>(
         what: &str,
         name: &str,
@@ -136,7 +140,7 @@ impl Error {
         Self::new(Status::UnknownName, format!("no {what} is named `{name}`{closest}{list}"))
     }
 
-    /// The same error at a place.
+    /// The same error with its place.
     pub fn at(mut self, place: Place) -> Self {
         self.place = place;
         self

@@ -2,32 +2,38 @@
  *
  * Generated from src/ffi by `cargo xtask headers`; do not edit.
  *
- * Statuses. Functions return a lahar_status: 0 done; positive: refused, nothing has changed; negative: the object is
- * poisoned, it answers queries and can be freed. lahar_last_error_message tells what was expected, what was received and
- * what to do. Nothing prints, exits or aborts.
+ * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
+ * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
+ * a text that says what was expected, what was received and what to do. No function prints, exits or
+ * aborts.
  *
- * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. `create` sets its output to NULL first,
- * and to the object only if it succeeds. `free` ignores NULL; freeing in any order is safe, children keep their parents
- * alive. A handle must not be used after it was freed. Bodies and walls are int64_t ids, never used again.
+ * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
+ * object first set the handle to NULL, and to the object only if they succeed. Functions that free
+ * ignore NULL. Objects may be freed in any order: a context lives as long as its worlds and materials, a
+ * world as long as its views. A handle must not be used after it was freed. Bodies, walls, prescribed
+ * velocities and tractions have int64_t ids, which are never used again.
  *
- * Pointers must not be NULL unless it is said. Arrays of the host are read or written during the call only. Texts are
- * NUL-terminated UTF-8. Texts that lahar returns by pointer are static: they live as long as the process.
+ * Pointers must not be NULL unless the text says so. Arrays of the host are read or written only during
+ * the call, except through views. Texts are NUL-terminated UTF-8. Texts that lahar returns by pointer are
+ * static: they are valid until the process ends.
  *
- * Structs begin with `struct_size`, their sizeof, so that they can grow at the end. Structs with an init function are
- * filled by it; in the others, which lahar fills, the host sets `struct_size` and lahar zeroes what it does not know.
+ * Structs begin with `struct_size`, their sizeof, so that fields can be added at the end. Structs that
+ * have an init function are filled by it. In the others, which lahar fills, the host sets
+ * `struct_size`, and lahar sets fields that it does not know to zero.
  *
- * Units are SI in this text; any consistent ones may be used. Tension is positive. Symmetric tensors have the components
- * xx, yy, zz, xy, yz, zx, in two dimensions too.
+ * Units are SI in this text; any consistent units may be used. Tension is positive. Symmetric tensors
+ * have the components xx, yy, zz, xy, yz, zx, in two dimensions too.
  *
  * Threads. Each function has a tag.
  *   Thread: any          from any thread at any time, and from callbacks
- *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another thread changes the
- *                        object
- *   Thread: owner        changes or frees the object: by one thread at a time (another gets LAHAR_ERROR_BUSY, except from
- *                        a free, before which the host must have ended all other use), not from callbacks
+ *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another
+ *                        thread changes the object
+ *   Thread: owner        changes or frees the object: by one thread at a time, not from callbacks. A
+ *                        second thread gets LAHAR_ERROR_BUSY; but before an object is freed the host
+ *                        must have ended all other use of its handle.
  *
- * Floating point. Every function saves the host's environment (rounding, traps), works in the default one, and restores
- * the host's; callbacks run in the host's.
+ * Floating point. Every function saves the host's floating-point environment (rounding, traps), works in
+ * the default one, and restores the host's. Callbacks run in the host's environment.
  */
 
 #ifndef LAHAR_H
@@ -46,7 +52,7 @@ struct lahar_host_api;
 
 /* ---- status ------------------------------------------------------------------------------------
  *
- * Statuses: what every function answers.
+ * Statuses: the return values of functions.
  */
 
 // Done.
@@ -70,13 +76,14 @@ struct lahar_host_api;
 // A parameter lies outside its hard bounds, or the model refuses the combination.
 #define LAHAR_ERROR_OUT_OF_BOUNDS 6
 
-// No body, wall or plugin has this id.
+// No object has this id, or no item of a list has this index.
 #define LAHAR_ERROR_NOT_FOUND 7
 
-// A view is open that forbids the call.
+// A view is open that forbids the call; free it first.
 #define LAHAR_ERROR_VIEW_OPEN 8
 
-// The view's data belong to an earlier step.
+// Particles may have been reordered since the view was opened: by a step, or by a query
+// that mapped the grid anew.
 #define LAHAR_ERROR_VIEW_STALE 9
 
 // Another thread is using the object.
@@ -85,7 +92,7 @@ struct lahar_host_api;
 // The field can be read but not written.
 #define LAHAR_ERROR_READ_ONLY 11
 
-// This combination of options is not supported; the message names the nearest that is.
+// This combination of options is not supported; the message names the nearest one that is.
 #define LAHAR_ERROR_UNSUPPORTED 12
 
 // An array is shorter than the result; the needed size is given.
@@ -94,12 +101,12 @@ struct lahar_host_api;
 // The time step exceeds the stable one; nothing was done.
 #define LAHAR_ERROR_STEP_TOO_LARGE 100
 
-// The host left a value in a particle field that is not finite, not positive where it must
-// be, or a position outside the grid; nothing was done.
+// A value that the host wrote to a particle field is not finite, or not positive where it
+// must be, or is a position outside the grid; nothing was done.
 #define LAHAR_ERROR_NON_FINITE_INPUT 101
 
-// A particle stands outside the box of a static grid, or beyond the range of block
-// coordinates; nothing was done.
+// A particle is outside the box of a static grid, beyond the range of block coordinates,
+// or beyond the axis of symmetry; nothing was done.
 #define LAHAR_ERROR_OUTSIDE_GRID 102
 
 // A material failed or asked for a smaller time step; nothing was done. Only with the
@@ -118,7 +125,7 @@ struct lahar_host_api;
 // The file is not a plugin, or its tables break the rules.
 #define LAHAR_ERROR_PLUGIN_INVALID 202
 
-// The plugin speaks another major version of the plugin ABI.
+// The plugin was built for another major version of the plugin ABI.
 #define LAHAR_ERROR_PLUGIN_ABI 203
 
 // The plugin refused to load.
@@ -127,7 +134,7 @@ struct lahar_host_api;
 // Threads could not be started, or the process was forked after they were.
 #define LAHAR_ERROR_THREADS 205
 
-// The memory for particles or grid is not to be had; nothing has changed.
+// There is not enough memory for particles or grid; nothing has changed.
 #define LAHAR_ERROR_OUT_OF_MEMORY 206
 
 // A defect of lahar was caught; the object is poisoned.
@@ -146,12 +153,12 @@ struct lahar_host_api;
 // poisoned.
 #define LAHAR_ERROR_PLUGIN_BROKEN -5
 
-// What a function answers: 0 done; positive: refused, nothing has changed; negative: the object is poisoned, it
-// answers queries and can be freed. 1 to 99: a mistake of the caller; 100 to 199: numerics; 200 to 299: files,
-// plugins and threads.
+// Return value of a function: 0 done; positive: refused, nothing has changed; negative: the object
+// is poisoned, it answers queries and can be freed. 1 to 99: a mistake of the caller; 100 to 199:
+// numerics; 200 to 299: files, plugins and threads.
 typedef int32_t lahar_status;
 
-// Name of a status, such as "LAHAR_ERROR_BUSY"; "unknown status" if there is none of this number.
+// Name of a status, such as "LAHAR_ERROR_BUSY"; "unknown status" if no status has this number.
 // The text is static: do not free it. Cannot fail.
 // Thread: any
 const char *lahar_status_name(lahar_status status);
@@ -170,7 +177,8 @@ const char *lahar_status_name(lahar_status status);
 // Patch version of this header.
 #define LAHAR_VERSION_PATCH 0
 
-// Number of the binary interface of this header. A library is usable if `lahar_abi_version()` answers the same.
+// Number of the binary interface of this header. A library is usable if `lahar_abi_version()`
+// returns the same number.
 #define LAHAR_ABI_VERSION 1
 
 // Version of the library that is running.
@@ -180,13 +188,15 @@ const char *lahar_status_name(lahar_status status);
 // Thread: any
 lahar_status lahar_version(int32_t *major, int32_t *minor, int32_t *patch);
 
-// Number of the binary interface of the library that is running; compare with LAHAR_ABI_VERSION. Cannot fail.
+// Number of the binary interface of the library that is running; compare with LAHAR_ABI_VERSION.
+// Cannot fail.
 // Thread: any
 int32_t lahar_abi_version(void);
 
 /* ---- context -----------------------------------------------------------------------------------
  *
- * Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
+ * Context: threads, log, and the plugins that have been loaded. Everything else is made from a
+ * context.
  */
 
 // Log level: something failed.
@@ -201,16 +211,19 @@ int32_t lahar_abi_version(void);
 // Log level: details for finding a fault.
 #define LAHAR_LOG_DETAIL 3
 
-// Threads, log and loaded plugins. Freed by lahar_context_free; worlds, materials and views keep it alive.
+// Threads, log and loaded plugins. Freed by lahar_context_free; it lives as long as one of its
+// worlds, materials or views.
 typedef struct lahar_context lahar_context;
 
-// Receives a line of the log: a LAHAR_LOG_ level, a text in UTF-8 without a newline that is valid during the call, and
-// the pointer given to lahar_context_set_log. Called on the thread that called lahar, in the host's floating-point
-// environment, with no lock held, just before the function returns. It may call functions tagged `callback-ok` or
-// `any`. It must not unwind, throw or longjmp.
+// Receives a line of the log: a level (LAHAR_LOG_*), a text in UTF-8 without a newline, valid only
+// during the call, and the pointer given to lahar_context_set_log. Called on the thread that
+// called lahar, in the host's floating-point environment, with no lock held, just before the
+// function returns. It may call functions tagged `callback-ok` or `any`. It must not unwind, throw
+// or longjmp.
 typedef void (*lahar_log_callback)(int32_t level, const char *message, void *user);
 
-// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see lahar_plugin.h.
+// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see
+// lahar_plugin.h.
 typedef const struct lahar_plugin_desc *(*lahar_plugin_entry_callback)(const struct lahar_host_api *host);
 
 // A loaded plugin. The texts are static: they live as long as the process.
@@ -231,57 +244,67 @@ typedef struct lahar_plugin_info {
     const char *licence;
     // Where to find it; may be empty.
     const char *url;
-    // The file that was loaded; of a registered plugin the id in brackets.
+    // The file that was loaded; for a registered plugin its id in brackets.
     const char *path;
 } lahar_plugin_info;
 
 // Makes a context.
 //
-// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
-// set. With more than 1 the context starts that many threads of its own; they end with it.
-// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
-// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
-// LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
-// contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE
-// (LAHAR_CAPSULES, see lahar_context_set_capsule_folder).
+// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS,
+// or 1 if it is not set. With more than 1 the context starts that many threads of its own, which
+// end with the context.
+// `context`: set to the new handle, or to NULL on failure; the host frees it with
+// lahar_context_free.
+//
+// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) selects an instruction set, see
+// lahar_context_simd. With LAHAR_CHECK_PLUGINS=1, read once in a process, every call of a model
+// works on guarded copies, which is many times slower. If a model breaks its contract, for
+// instance by a write past its points, LAHAR_ERROR_PLUGIN_BROKEN is returned and the message says
+// how.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the
+// variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE (LAHAR_CAPSULES, see
+// lahar_context_set_capsule_folder).
 // Thread: any
-lahar_status lahar_context_create(int32_t threads,
-                                  lahar_context **context);
+lahar_status lahar_context_create(int32_t threads, lahar_context **context);
 
-// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and views are freed too.
-// NULL is ignored.
+// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and
+// views are freed too. NULL is ignored.
 // Thread: owner
 void lahar_context_free(lahar_context *context);
 
 // Number of threads of the context.
 //
+// `threads`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT.
 // Thread: any
 lahar_status lahar_context_thread_count(const lahar_context *context, int32_t *threads);
 
 // Name of the instruction set that the context's kernels use: "scalar", "avx2" or "avx512".
 //
-// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made; models of
-// lahar's SDK choose theirs in the same way, once in a process. Results
-// are the same to the last bit for any number of threads; between instruction sets they differ by round-off.
+// It is the best one of the processor, or the one that the environment variable LAHAR_SIMD named
+// when the context was made. Models written with lahar's SDK select theirs in the same way, once
+// in a process. Results are the same to the last bit for any number of threads; between
+// instruction sets they differ by round-off.
 //
 // The text is static: do not free it. NULL for a NULL context. Cannot fail.
 // Thread: any
 const char *lahar_context_simd(const lahar_context *context);
 
-// Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.
+// Number of different threads that have run work of the context's worlds so far; small worlds run
+// on one thread.
 //
+// `threads`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT.
 // Thread: any
-lahar_status lahar_context_threads_used(const lahar_context *context,
-                                        int32_t *threads);
+lahar_status lahar_context_threads_used(const lahar_context *context, int32_t *threads);
 
 // Sets where log lines go. Without this call lahar is silent.
 //
 // `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
-// `user`: handed to the callback on every thread that calls functions of this context; lahar does not follow it.
-// `max_level`: the most detailed level that is wanted, one of LAHAR_LOG_*.
+// `user`: passed to the callback on every thread that calls functions of this context; lahar does
+// not follow it.
+// `max_level`: the most detailed level to be passed on, one of LAHAR_LOG_*.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
 // Thread: any
 lahar_status lahar_context_set_log(lahar_context *context,
@@ -293,12 +316,14 @@ lahar_status lahar_context_set_log(lahar_context *context,
 // Thread: any
 void lahar_log_stderr(int32_t level, const char *message, void *user);
 
-// Loads a plugin into the context; a plugin that is loaded already is found again. It stays in memory until the
-// process ends.
+// Loads a plugin into the context. If it is loaded already, its index is returned again. A plugin
+// stays in memory until the process ends.
 //
-// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
-// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':', then in lahar/plugins-1 beside this
-// library. A library that is no plugin but holds an Abaqus UMAT or VUMAT is taken too, if the plugin lahar_umat is found by its name.
+// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager". For a bare
+// name lib<name>.so is searched in the folders of the environment variable LAHAR_PLUGIN_PATH,
+// separated by ':', then in lahar/plugins-1 beside this library. A library that is not a plugin
+// but contains an Abaqus UMAT or VUMAT is accepted too if the plugin lahar_umat is found by its
+// name.
 // `plugin`: gets its index in the context; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
 // LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
@@ -307,29 +332,35 @@ lahar_status lahar_context_load_plugin(lahar_context *context,
                                        const char *name_or_path,
                                        int64_t *plugin);
 
-// Takes a plugin that is linked into the program; an entry that is registered already is found again.
+// Registers a plugin that is linked into the program. If its entry is registered already, its
+// index is returned again.
 //
-// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known; the tables that it returns must stay as they are until the
-// process ends.
-// `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
+// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known already. The tables
+// that it returns must not change until the process ends.
+// `index`: gets its index in the context; may be NULL. `path` of lahar_plugin_info is its id in
+// brackets.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
+// LAHAR_ERROR_PLUGIN_REFUSED.
 // Thread: any
 lahar_status lahar_context_register_plugin(lahar_context *context,
                                            lahar_plugin_entry_callback plugin,
                                            int64_t *index);
 
-// Sets the folder to which a step that fails at a point writes a capsule: a small JSON file with the model, its parameters, and all that
-// the model was given and answered at the first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Files that are
-// there are kept. The message of the step's error says where the capsule is.
+// Sets the folder for capsules. If a model fails at a point in a step, the step writes a capsule:
+// a small JSON file with the model, its parameters, and the input and output of the model at the
+// first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Existing files
+// are not overwritten. The error message of the step gives the path of the capsule.
 //
-// `folder`: a folder that exists; NULL or "": no capsules. At first it is that of the environment variable LAHAR_CAPSULES.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (there is no such folder; nothing has changed).
+// `folder`: an existing folder; NULL or "": no capsules. A new context has the folder of the
+// environment variable LAHAR_CAPSULES.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (the folder does not exist;
+// nothing has changed).
 // Thread: any
-lahar_status lahar_context_set_capsule_folder(lahar_context *context,
-                                              const char *folder);
+lahar_status lahar_context_set_capsule_folder(lahar_context *context, const char *folder);
 
 // Number of plugins that are loaded into the context.
 //
+// `plugins`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT.
 // Thread: any
 lahar_status lahar_context_plugin_count(const lahar_context *context, int64_t *plugins);
@@ -346,8 +377,8 @@ lahar_status lahar_context_plugin_info(const lahar_context *context,
 
 /* ---- error -------------------------------------------------------------------------------------
  *
- * The last error: a text for people and a struct for programs. A failed call keeps its error for the calling thread
- * and for the context; a call that succeeds does not clear it.
+ * The last error: a text for people and a struct for programs. A call that fails records its error
+ * for the calling thread and for the context; a call that succeeds does not clear it.
  */
 
 // Where and why a call failed, for programs.
@@ -368,16 +399,16 @@ typedef struct lahar_error_info {
     double suggested_dt;
 } lahar_error_info;
 
-// Text of the last error of the calling thread: which function, what was expected, what was received, what to do.
+// Text of the last error of the calling thread: which function, what was expected, what was
+// received, what to do.
 //
-// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0, to ask for the size.
+// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0,
+// to ask for the size.
 // `needed`: gets the size of the text with its NUL; may be NULL.
 // Errors: LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated), LAHAR_ERROR_NULL_ARGUMENT,
 // LAHAR_ERROR_INVALID_ARGUMENT (negative capacity). None of them changes the last error.
 // Thread: any
-lahar_status lahar_last_error_message(char *buffer,
-                                      int64_t capacity,
-                                      int64_t *needed);
+lahar_status lahar_last_error_message(char *buffer, int64_t capacity, int64_t *needed);
 
 // The last error of the calling thread, for programs.
 //
@@ -386,7 +417,8 @@ lahar_status lahar_last_error_message(char *buffer,
 // Thread: any
 lahar_status lahar_last_error_info(lahar_error_info *info);
 
-// Text of the last error of any call on this context, its worlds, materials and views, from any thread.
+// Text of the last error of any call on this context, its worlds, materials and views, from any
+// thread.
 //
 // `buffer`, `capacity`, `needed`, errors: as in lahar_last_error_message.
 // Thread: any
@@ -397,20 +429,21 @@ lahar_status lahar_context_error_message(const lahar_context *context,
 
 /* ---- model -------------------------------------------------------------------------------------
  *
- * Models: what the loaded plugins offer. Numbers such as `kinematics` are the constants of lahar_plugin.h.
+ * Models: the constitutive models of the loaded plugins. Numbers such as `kinematics` are the
+ * constants of lahar_plugin.h.
  */
 
 // A constitutive model. The texts are static.
 typedef struct lahar_model_info {
     // sizeof(lahar_model_info); set by the host.
     uint32_t struct_size;
-    // What the model takes: one of LAHAR_KINEMATICS_* of lahar_plugin.h.
+    // Measure of deformation that the model takes: one of LAHAR_KINEMATICS_* of lahar_plugin.h.
     int32_t kinematics;
     // Name, for lahar_material_create.
     const char *name;
     // One sentence.
     const char *summary;
-    // Where the model is published.
+    // Publication of the model.
     const char *reference;
     // Index of the plugin that it comes from.
     int64_t plugin;
@@ -428,7 +461,8 @@ typedef struct lahar_model_info {
 typedef struct lahar_parameter_info {
     // sizeof(lahar_parameter_info); set by the host.
     uint32_t struct_size;
-    // One of LAHAR_PARAMETER_* of lahar_plugin.h: a real, a whole number, or a choice given by its position 0, 1, ...
+    // One of LAHAR_PARAMETER_* of lahar_plugin.h: a real, a whole number, or a choice given by its
+    // position 0, 1, ...
     int32_t kind;
     // 1: must be given; 0: `default_value` is used.
     int32_t required;
@@ -436,7 +470,7 @@ typedef struct lahar_parameter_info {
     int32_t reserved;
     // Name, for lahar_material_create.
     const char *name;
-    // Symbol of the literature.
+    // Symbol used in the literature.
     const char *symbol;
     // SI unit.
     const char *unit;
@@ -456,7 +490,8 @@ typedef struct lahar_parameter_info {
     double advised_max;
 } lahar_parameter_info;
 
-// A state variable of a model; it is a field of every body of such a material, by this name. The texts are static.
+// A state variable of a model. Bodies of such a material have a particle field with this name. The
+// texts are static.
 typedef struct lahar_state_info {
     // sizeof(lahar_state_info); set by the host.
     uint32_t struct_size;
@@ -478,6 +513,7 @@ typedef struct lahar_state_info {
 
 // Number of models of all loaded plugins.
 //
+// `models`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT.
 // Thread: any
 lahar_status lahar_context_model_count(const lahar_context *context, int64_t *models);
@@ -496,7 +532,7 @@ lahar_status lahar_context_model_info(const lahar_context *context,
 //
 // `name`: NUL-terminated, UTF-8.
 // `model`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_context_find_model(const lahar_context *context, const char *name, int64_t *model);
 
@@ -504,7 +540,8 @@ lahar_status lahar_context_find_model(const lahar_context *context, const char *
 //
 // `model`: index of the model. `parameter`: 0 to `parameter_count` - 1 of lahar_model_info.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
+// index).
 // Thread: any
 lahar_status lahar_context_model_parameter(const lahar_context *context,
                                            int64_t model,
@@ -515,7 +552,8 @@ lahar_status lahar_context_model_parameter(const lahar_context *context,
 //
 // `model`: index of the model. `state`: 0 to `state_count` - 1 of lahar_model_info.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
+// index).
 // Thread: any
 lahar_status lahar_context_model_state(const lahar_context *context,
                                        int64_t model,
@@ -524,20 +562,24 @@ lahar_status lahar_context_model_state(const lahar_context *context,
 
 /* ---- material ----------------------------------------------------------------------------------
  *
- * Materials: a model with values of its parameters. A material may be used by many bodies and worlds.
+ * Materials: a model with values of its parameters. A material may be used by many bodies and
+ * worlds.
  */
 
-// A model with values of its parameters. Freed by lahar_material_free; bodies keep what they need.
+// A model with values of its parameters. Freed by lahar_material_free; existing
+// bodies do not need it.
 typedef struct lahar_material lahar_material;
 
 // Makes a material from named values. Parameters that are not named have their defaults.
 //
 // `model`: name of a model of a loaded plugin.
-// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of the model's description;
-// NULL is allowed if `count` is 0.
-// `material`: set to the new handle, or to NULL on failure; the host frees it with lahar_material_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message tells the closest),
-// LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS, LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
+// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of
+// lahar_parameter_info; NULL is allowed if `count` is 0.
+// `material`: set to the new handle, or to NULL on failure; the host frees it with
+// lahar_material_free.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message
+// names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
+// LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
 // Thread: any
 lahar_status lahar_material_create(lahar_context *context,
                                    const char *model,
@@ -546,13 +588,14 @@ lahar_status lahar_material_create(lahar_context *context,
                                    const double *values,
                                    lahar_material **material);
 
-// Frees the handle; bodies made of the material go on. NULL is ignored.
+// Frees the handle; bodies of the material remain valid. NULL is ignored.
 // Thread: owner
 void lahar_material_free(lahar_material *material);
 
-// Value of a parameter, given or default, in the unit of its description.
+// Value of a parameter, given or default.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+// `value`: gets the value, in the unit of lahar_parameter_info.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_material_value(const lahar_material *material,
                                   const char *parameter,
@@ -562,8 +605,9 @@ lahar_status lahar_material_value(const lahar_material *material,
  *
  * Worlds: a background grid with its bodies and walls, and time.
  *
- * Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a result. Any consistent
- * units may be used; those named are SI. In two dimensions a world is plane strain and 1 m thick.
+ * Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a
+ * result. Any consistent units may be used; those named are SI. In two dimensions a world is plane
+ * strain and 1 m thick.
  */
 
 // Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
@@ -642,10 +686,12 @@ lahar_status lahar_material_value(const lahar_material *material,
 // Grid: the blocks of a fixed box; a particle that leaves it is an error.
 #define LAHAR_GRID_STATIC 2
 
-// A background grid with its bodies and walls. Freed by lahar_world_free; views keep it alive.
+// A background grid with its bodies and walls. Freed by lahar_world_free; it lives as
+// long as one of its views.
 typedef struct lahar_world lahar_world;
 
-// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what else is wanted.
+// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what
+// differs from the defaults.
 typedef struct lahar_world_options {
     // sizeof(lahar_world_options); set by lahar_world_options_init.
     uint32_t struct_size;
@@ -659,12 +705,13 @@ typedef struct lahar_world_options {
     int32_t order;
     // One of LAHAR_GRID_*.
     int32_t grid_policy;
-    // Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings from `origin` or from
-    // x = 0 are refused.
+    // Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings
+    // from `origin` or from x = 0 are refused.
     double spacing;
     // Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
     double origin[3];
-    // Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default), infinity is PIC.
+    // Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default),
+    // infinity is PIC.
     double pic_rate;
     // Courant number of the stable time step [-], in (0, 1]; default 0.4.
     double cfl;
@@ -678,19 +725,22 @@ typedef struct lahar_world_options {
     double box_max[3];
     // One of LAHAR_WALLS_*.
     int32_t wall_treatment;
-    // 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
-    // Gravity must act along y. Hold the axis with a slip wall at x = 0: a step of particles that crossed it is refused.
+    // 1: axial symmetry about the y axis, in two dimensions only: x is the radius, and volumes,
+    // masses and forces are per radian; default 0. Gravity must act along y. Put a slip wall at x
+    // = 0: if a particle crosses the axis, the next step is refused.
     int32_t axisymmetric;
-    // Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
-    // 0: the default, 2.
+    // Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20, or 0
+    // for the default, 2. Each term costs one more transfer to the grid and back.
     int32_t filter_order;
     // 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
     int32_t body_force;
-    // How often a step is repeated smaller when a material fails or asks for a smaller one, 0 (default) to 20. Then such a step changes
-    // nothing: it is answered by LAHAR_ERROR_SMALLER_STEP if the host gave its length, or if the repetitions did not help. It
-    // costs a copy of the particles, in memory and once in each step. With 0 a failure poisons the world, and a wish shortens the next step.
+    // How often a step is repeated with a smaller length when a material fails or asks for a
+    // smaller step, 0 (default) to 20. If the host gave the length of the step, or if the
+    // repetitions do not help, nothing is changed and LAHAR_ERROR_SMALLER_STEP is returned. Above
+    // 0 the particles are copied in each step, which costs time and memory. With 0 a failure
+    // poisons the world, and a material that asks for a smaller step shortens the next one.
     int32_t retries;
-    // 0.
+    // Must be 0.
     int32_t reserved;
 } lahar_world_options;
 
@@ -705,66 +755,74 @@ lahar_status lahar_world_options_init(lahar_world_options *options, int64_t size
 //
 // `options`: copied.
 // `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
-// static grid), LAHAR_ERROR_UNSUPPORTED (options that do not go together; the text names the nearest that do).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+// LAHAR_ERROR_OUT_OF_MEMORY (a static grid), LAHAR_ERROR_UNSUPPORTED (options that cannot be
+// combined; the message names the nearest ones that can).
 // Thread: any
 lahar_status lahar_world_create(lahar_context *context,
                                 const lahar_world_options *options,
                                 lahar_world **world);
 
-// Frees the handle. The memory goes when the last view is freed too. NULL is ignored.
+// Frees the handle. The memory is freed together with the last view. NULL is ignored.
 // Thread: owner
 void lahar_world_free(lahar_world *world);
 
-// Sets constant gravity from the next step on, in the place of a table (lahar_world_set_gravity_table) too.
+// Sets constant gravity from the next step on. It also replaces gravity by a table, see
+// lahar_world_set_gravity_table.
 //
 // `gravity`: [m/s^2], shape [3], finite.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_world_set_gravity(lahar_world *world, const double gravity[3]);
 
 // Sets the local non-viscous damping from the next step on.
 //
 // `damping`: [-], in [0, 1).
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_world_set_damping(lahar_world *world, double damping);
 
 // One step of the given length.
 //
 // `dt`: [s], > 0 and not above lahar_world_stable_dt.
-// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is
-// time again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
-// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of
-// a static grid or too far away; the world cannot step until the host writes positions back or removes the body),
-// LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
-// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material
-// failed or asks for a smaller step, the length of which is in `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY,
+// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, also if it is
+// so small that time + dt equals time), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in
+// `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an
+// invalid value), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too
+// far away, or beyond the axis of symmetry; the world cannot step until the host writes other
+// positions or removes the body), LAHAR_ERROR_THREADS (the process was forked after the threads of
+// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
+// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only
+// with the option `retries`: a material failed or asks for a smaller step; its length is in
+// `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY,
 // LAHAR_ERROR_POISONED.
-// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE (both not with `retries`, unless a model fails as a whole),
-// LAHAR_ERROR_PLUGIN_BROKEN, LAHAR_ERROR_PANIC; lahar_last_error_info tells the body, the particle, the step and the time.
+// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE
+// (with `retries` neither, unless a model fails as a whole), LAHAR_ERROR_PLUGIN_BROKEN,
+// LAHAR_ERROR_PANIC; lahar_last_error_info gives the body, the particle, the step and the time.
 // Thread: owner
-lahar_status lahar_world_step(lahar_world *world,
-                              double dt);
+lahar_status lahar_world_step(lahar_world *world, double dt);
 
 // One step of the stable length.
 //
 // `dt`: gets the length of the step [s]; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite, or so small that
-// time + dt is time again.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite,
+// or so small that time + dt equals time.
 // Thread: owner
-lahar_status lahar_world_step_auto(lahar_world *world,
-                                   double *dt);
+lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
 
-// Steps of the stable length until a time is reached; the last two are shortened to hit it exactly.
+// Makes steps of the stable length until a time is reached; the last two are shortened to reach it
+// exactly.
 //
 // `until`: time to reach [s], not before the present one.
-// `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
-// `steps_done`: gets the number of committed steps, on failure too; may be NULL.
-// `time`: gets the time that was reached [s], on failure too; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or past, if `max_steps` is
-// negative, or if the stable step becomes so small that time + dt is time again. A positive status means that no partial
-// step was committed.
+// `max_steps`: largest number of steps, >= 0; INT64_MAX for no limit. To stop early for this
+// reason is no error.
+// `steps_done`: gets the number of committed steps, also if a step fails; may be NULL.
+// `time`: gets the time that was reached [s], also if a step fails; may be NULL.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or in
+// the past, if `max_steps` is negative, or if the stable step becomes so small that time + dt
+// equals time. A positive status means that no partial step was committed.
 // Thread: owner
 lahar_status lahar_world_advance(lahar_world *world,
                                  double until,
@@ -772,53 +830,59 @@ lahar_status lahar_world_advance(lahar_world *world,
                                  int64_t *steps_done,
                                  double *time);
 
-// Longest step that is stable now [s]: infinity without particles.
+// Longest step that is stable now.
 //
-// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
-// above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
-// dimension, nu the kinematic viscosity. Gravity by a table counts with its largest value in the step, and a prescribed
-// velocity V with |V| dt <= cfl h.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed).
+// `dt`: gets the length [s]; infinity without particles. It is the largest dt, over all particles,
+// with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not longer than the step
+// that the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h
+// the spacing, D the dimension, nu the kinematic viscosity. Of gravity by a table the largest
+// value in the step is used. A prescribed velocity V adds the condition |V| dt <= cfl h.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material
+// gives no wave speed).
 // Thread: callback-ok
-lahar_status lahar_world_stable_dt(const lahar_world *world,
-                                   double *dt);
+lahar_status lahar_world_stable_dt(const lahar_world *world, double *dt);
 
-// Time of the world [s].
+// Time of the world.
 //
+// `time`: gets the time [s].
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_time(const lahar_world *world, double *time);
 
 // Number of committed steps.
 //
+// `steps`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_step_count(const lahar_world *world, int64_t *steps);
 
-// Length of the last committed step [s]; 0 before the first.
+// Length of the last committed step.
 //
+// `dt`: gets the length [s]; 0 before the first step.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_last_dt(const lahar_world *world, double *dt);
 
 /* ---- body --------------------------------------------------------------------------------------
  *
- * Bodies: particles of one material. They are made from the host's arrays or from shapes, and named by ids that are
- * counted from 0 and never used again.
+ * Bodies: particles of one material. They are made from the host's arrays or from shapes, and
+ * named by ids that are counted from 0 and never used again.
  */
 
-// An array of the host with any layout: component c of point k stands at data[c * component_stride + k * point_stride].
+// An array of the host with any layout: component c of point k is
+// data[c * component_stride + k * point_stride].
 typedef struct lahar_array {
     // First value; NULL: not given. Read during the call only.
     const double *data;
-    // Distance of two components of a point, in doubles. Both strides 0: interleaved, point after point.
+    // Distance between two components of a point, in doubles. If both strides are 0, the array is
+    // interleaved: point after point.
     int64_t component_stride;
-    // Distance of two points, in doubles.
+    // Distance between two points, in doubles.
     int64_t point_stride;
 } lahar_array;
 
-// Particles from the host's arrays. Fill it with lahar_particles_init, then set `count`, `position`, `volume`, and either
-// `mass` or `density`.
+// Particles from the host's arrays. Fill it with lahar_particles_init, then set `count`,
+// `position`, `volume`, and either `mass` or `density`.
 typedef struct lahar_particles {
     // sizeof(lahar_particles); set by lahar_particles_init.
     uint32_t struct_size;
@@ -826,7 +890,8 @@ typedef struct lahar_particles {
     int32_t reserved;
     // Number of particles.
     int64_t count;
-    // Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and from x = 0.
+    // Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and
+    // from x = 0.
     lahar_array position;
     // Volumes [m^3], shape [count], > 0; in two dimensions areas times 1 m.
     lahar_array volume;
@@ -834,29 +899,34 @@ typedef struct lahar_particles {
     lahar_array mass;
     // Velocities [m/s], shape [count, dimension]; not given: 0.
     lahar_array velocity;
-    // Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given: 0.
+    // Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given:
+    // 0.
     lahar_array stress;
     // Mass density [kg/m^3], > 0; used if `mass` is not given.
     double density;
-    // Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given: not known. The GIMP shape functions
-    // and tractions on the body need them.
+    // Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given:
+    // unknown. The GIMP shape functions and tractions on the body need them.
     lahar_array size;
 } lahar_particles;
 
-// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or `mass`.
+// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or
+// `mass`.
 typedef struct lahar_fill {
     // sizeof(lahar_fill); set by lahar_fill_init.
     uint32_t struct_size;
     // Particles per cell of the grid along each axis, >= 1; default 2.
     int32_t particles_per_cell;
-    // Mass density [kg/m^3], > 0; 0: not given. The mass of the body is that of the lattice points inside the shape, each
-    // with the volume of its part of the lattice: exact for a box; a sphere of radius h, the spacing, may be 10 % off.
+    // Mass density [kg/m^3], > 0; 0: not given. Each lattice point inside the shape is a particle
+    // with the volume of its lattice cell. The mass of the body is then exact for a box; for a
+    // sphere with a radius of one spacing it may be 10 % off.
     double density;
-    // Mass of the whole body [kg], > 0; 0: not given. Shared evenly by the particles: the mass is exact.
+    // Mass of the whole body [kg], > 0; 0: not given. Divided evenly among the particles, so that
+    // it is exact.
     double mass;
     // Velocity of all particles [m/s], shape [3]; default 0.
     double velocity[3];
-    // Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6]; default 0.
+    // Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6];
+    // default 0.
     double stress[6];
 } lahar_fill;
 
@@ -878,8 +948,9 @@ lahar_status lahar_fill_init(lahar_fill *fill, int64_t size);
 //
 // `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 // `body`: gets the id of the new body; must not be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive, too
-// far away, strides), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
+// value that is not finite, not positive or too far away; strides), LAHAR_ERROR_OUT_OF_MEMORY,
+// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_add_particles(lahar_world *world,
                                       const lahar_material *material,
@@ -888,8 +959,10 @@ lahar_status lahar_body_add_particles(lahar_world *world,
 
 // Adds a body that fills a box.
 //
-// `min`, `max`: corners [m], shape [3]. Particles stand on a regular lattice, `particles_per_cell` along each axis.
-// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+// `min`, `max`: corners [m], shape [3]. Particles are placed on a regular lattice,
+// `particles_per_cell` along each axis.
+// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be
+// NULL.
 // Errors: as lahar_body_add_particles.
 // Thread: owner
 lahar_status lahar_body_add_box(lahar_world *world,
@@ -902,8 +975,8 @@ lahar_status lahar_body_add_box(lahar_world *world,
 // Adds a body that fills a sphere, or a disc in two dimensions.
 //
 // `center`: [m], shape [3]. `radius`: [m], > 0.
-// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside, which may be
-// 10 % off if the radius is the spacing; give `mass` for an exact one.
+// `fill`: density or mass, velocity, stress. With `density` the mass may be 10 % off if the
+// radius is one spacing (see lahar_fill); give `mass` for an exact one.
 // `body`: gets the id of the new body; must not be NULL.
 // Errors: as lahar_body_add_particles.
 // Thread: owner
@@ -916,9 +989,10 @@ lahar_status lahar_body_add_sphere(lahar_world *world,
 
 // Adds a body that fills a simple polygon; two dimensions only.
 //
-// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass`
-// for an exact one.
+// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point,
+// clockwise or counter-clockwise.
+// `fill`: density or mass, velocity, stress. With `density` the mass is approximate (see
+// lahar_fill); give `mass` for an exact one.
 // `body`: gets the id of the new body; must not be NULL.
 // Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 // Thread: owner
@@ -931,22 +1005,23 @@ lahar_status lahar_body_add_polygon(lahar_world *world,
 
 // Removes a body. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN,
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_remove(lahar_world *world, int64_t body);
 
-// Switches F-bar on or off for a body; off at first.
+// Switches F-bar on or off for a body; it is off at first.
 //
-// With F-bar the particles in a cell of the grid grow and shrink alike (the trace of the velocity gradient is averaged, weighted by
-// volume), so that nearly incompressible and plastic material does not lock. It costs an additional gather per step.
+// With F-bar the particles in a cell of the grid have the same rate of volume change: the trace of
+// the velocity gradient is averaged, weighted by volume. Nearly incompressible and plastic
+// materials then do not lock. F-bar costs one more transfer from the grid to the particles in each
+// step.
+//
 // `on`: 1 or 0.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY,
-// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT,
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
-lahar_status lahar_body_set_f_bar(lahar_world *world,
-                                  int64_t body,
-                                  int32_t on);
+lahar_status lahar_body_set_f_bar(lahar_world *world, int64_t body, int32_t on);
 
 // Number of bodies.
 //
@@ -956,15 +1031,12 @@ lahar_status lahar_world_body_count(const lahar_world *world, int64_t *bodies);
 
 // Ids of the bodies, ascending.
 //
-// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 // `count`: gets the number of bodies.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
-// (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
+// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_world_bodies(const lahar_world *world,
-                                int64_t capacity,
-                                int64_t *ids,
-                                int64_t *count);
+lahar_status lahar_world_bodies(const lahar_world *world, int64_t capacity, int64_t *ids, int64_t *count);
 
 // Number of particles of a body.
 //
@@ -974,8 +1046,9 @@ lahar_status lahar_body_particle_count(const lahar_world *world, int64_t body, i
 
 /* ---- field -------------------------------------------------------------------------------------
  *
- * Particle fields: position, velocity, stress and so on, and every state variable of the body's model, by name. The
- * functions here copy, in the order of insertion (by particle id); views show the memory itself.
+ * Particle fields: position, velocity, stress and so on, and every state variable of the body's
+ * model, by name. The functions of this section copy, in the order of particle ids; views give
+ * access to the memory itself.
  */
 
 // A field of particles or of nodes. The texts are static.
@@ -1006,7 +1079,8 @@ lahar_status lahar_body_field_count(const lahar_world *world, int64_t body, int6
 //
 // `field`: 0 to lahar_body_field_count - 1.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or index), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or
+// index), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_field_info(const lahar_world *world,
                                    int64_t body,
@@ -1016,21 +1090,20 @@ lahar_status lahar_body_field_info(const lahar_world *world,
 // Index of the field of this name.
 //
 // `field`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
-// closest name), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
+// message names the closest one), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_body_find_field(const lahar_world *world,
-                                   int64_t body,
-                                   const char *name,
-                                   int64_t *field);
+lahar_status lahar_body_find_field(const lahar_world *world, int64_t body, const char *name, int64_t *field);
 
 // Copies a field to the host, in the order of particle ids.
 //
 // `count`: number of particles of the body.
-// `values`: component c of particle k is written to values[c * component_stride + k * point_stride]; both strides 0:
-// interleaved, shape [count, components].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
-// closest name), LAHAR_ERROR_BUFFER_TOO_SMALL (count), LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
+// `values`: component c of particle k is written to values[c * component_stride + k *
+// point_stride], in the unit of the field. If both strides are 0, the array is interleaved, shape
+// [count, components].
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
+// message names the closest one), LAHAR_ERROR_BUFFER_TOO_SMALL (count),
+// LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_read(const lahar_world *world,
                              int64_t body,
@@ -1042,12 +1115,13 @@ lahar_status lahar_body_read(const lahar_world *world,
 
 // Copies a field from the host, in the order of particle ids.
 //
-// A value that is not finite is refused by this call, with nothing written. Masses and volumes that are not positive and
-// positions outside the grid are found before the next step, which answers LAHAR_ERROR_NON_FINITE_INPUT until the host
-// writes good ones.
+// A value that is not finite is refused by this call, and nothing is written. Masses and volumes
+// that are not positive and positions outside the grid are found by the next step, which returns
+// LAHAR_ERROR_NON_FINITE_INPUT until the host writes valid ones.
+//
 // `count`, `values`, strides: as in lahar_body_read.
-// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite, LAHAR_ERROR_READ_ONLY,
-// LAHAR_ERROR_POISONED.
+// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
+// LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_write(lahar_world *world,
                               int64_t body,
@@ -1057,12 +1131,17 @@ lahar_status lahar_body_write(lahar_world *world,
                               int64_t component_stride,
                               int64_t point_stride);
 
-// Ids of a body's particles in storage order, the order of views: the k-th value of a view belongs to ids[k].
+// Ids of a body's particles in storage order, the order of views: the k-th value of a view belongs
+// to ids[k]. If bodies were added or removed since the last step, the particles are first mapped
+// to the grid and may be reordered by that.
 //
-// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 // `count`: gets the number of particles.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative
+// capacity), LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched),
+// LAHAR_ERROR_BUSY; if the particles have to be mapped also LAHAR_ERROR_VIEW_OPEN (a write view is
+// open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see
+// lahar_world_step).
 // Thread: callback-ok
 lahar_status lahar_body_ids(const lahar_world *world,
                             int64_t body,
@@ -1072,26 +1151,29 @@ lahar_status lahar_body_ids(const lahar_world *world,
 
 /* ---- view --------------------------------------------------------------------------------------
  *
- * Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host frees each view.
+ * Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host
+ * frees each view.
  */
 
-// Access of a view: read. A step makes the view stale.
+// Access of a view: read. The view becomes stale when particles may have been reordered: by a
+// step, or by a query that maps the grid anew.
 #define LAHAR_ACCESS_READ 0
 
 // Access of a view: read and write. No step is possible while it is open.
 #define LAHAR_ACCESS_WRITE 1
 
-// A view of a field. Freed by lahar_view_free; keeps the world alive.
+// A view of a field. Freed by lahar_view_free; the world lives at least as long.
 typedef struct lahar_view lahar_view;
 
-// Where the data of a view stand.
+// The data of a view.
 typedef struct lahar_view_info {
     // sizeof(lahar_view_info); set by the host.
     uint32_t struct_size;
     // Number of components per particle.
     int32_t components;
-    // Component c of particle k, in storage order, stands at data[c * stride + k]. Not to be written through a view with
-    // LAHAR_ACCESS_READ. The memory stays mapped until the view is freed.
+    // Component c of particle k, in storage order, is data[c * stride + k], in the unit of the
+    // field (lahar_field_info). Must not be written through a view with LAHAR_ACCESS_READ. The
+    // memory stays valid until the view is freed.
     double *data;
     // Number of particles.
     int64_t count;
@@ -1103,13 +1185,19 @@ typedef struct lahar_view_info {
 
 // Opens a view of a field of a body.
 //
-// While any view is open, bodies cannot be added or removed; while a write view is open, the world cannot step. What is
-// written through a view is checked before the next step.
+// While any view is open, bodies cannot be added or removed; while a write view is open, the world
+// cannot step, and a query of the grid is refused if it would have to map the grid anew. What is
+// written through a view counts once all write views of the world are freed; it is checked before
+// the next step. If bodies were added or removed since the last step, opening a view first maps
+// the particles to the grid; they may be reordered by that.
+//
 // `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
 // `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND (body),
-// LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name), LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED (write access).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND
+// (body), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_READ_ONLY,
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED (write access); if the particles have to be mapped also
+// LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
+// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step).
 // Thread: owner
 lahar_status lahar_body_view(lahar_world *world,
                              int64_t body,
@@ -1117,16 +1205,16 @@ lahar_status lahar_body_view(lahar_world *world,
                              int32_t access,
                              lahar_view **view);
 
-// Where the data stand.
+// Address and layout of the data of a view.
 //
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (a step has been made since),
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (of a read
+// view: particles may have been reordered since it was opened),
 // LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_view_data(const lahar_view *view,
-                             lahar_view_info *info);
+lahar_status lahar_view_data(const lahar_view *view, lahar_view_info *info);
 
-// Closes the view. Its memory must not be used any more. NULL is ignored.
+// Closes the view and frees the handle. Its data must not be used any more. NULL is ignored.
 // Thread: callback-ok
 void lahar_view_free(lahar_view *view);
 
@@ -1147,13 +1235,14 @@ void lahar_view_free(lahar_view *view);
 // Wall: as separating, with Coulomb friction.
 #define LAHAR_WALL_FRICTION 3
 
-// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
+// A plane wall. Fill it with lahar_wall_init, then set what differs from the defaults.
 //
-// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`:
-// 0 for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
-// half-space. Place walls on node planes for linear shapes, and half a cell from node planes for quadratic ones (for
-// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up
-// to h late. Walls apply in the order in which they were added.
+// A wall acts on every node whose signed distance from the plane, positive on the side of the
+// material, is at most 0 for linear shapes and h/2 for quadratic ones, with the spacing h. So it
+// also acts on all nodes behind it, the whole half-space. Put walls on node planes for linear
+// shapes, and half a cell from node planes for quadratic ones (for instance by an `origin` of
+// h/2): then the shape function of no free node reaches behind the wall. At other positions the
+// wall acts too late, by a distance of up to h. Walls act in the order in which they were added.
 typedef struct lahar_wall {
     // sizeof(lahar_wall); set by lahar_wall_init.
     uint32_t struct_size;
@@ -1179,20 +1268,20 @@ lahar_status lahar_wall_init(lahar_wall *wall, int64_t size);
 // Adds a wall.
 //
 // `wall`: copied. `id`: gets the id of the wall; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_UNSUPPORTED
-// (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
-lahar_status lahar_wall_add(lahar_world *world,
-                            const lahar_wall *wall,
-                            int64_t *id);
+lahar_status lahar_wall_add(lahar_world *world, const lahar_wall *wall, int64_t *id);
 
 // Removes a wall. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_wall_remove(lahar_world *world, int64_t id);
 
-// Force of a wall on the material in the last step.
+// Force of a wall on the material in the last step; 0 before the first step with the wall.
 //
 // `force`: written [N], shape [3].
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
@@ -1201,23 +1290,24 @@ lahar_status lahar_wall_reaction(const lahar_world *world, int64_t id, double fo
 
 /* ---- table -------------------------------------------------------------------------------------
  *
- * Tables of the host: values over time, piecewise linear between the rows. Before the first row and after the last one the
- * values of that row hold.
+ * Tables of the host: values over time, piecewise linear between the rows. The first row also
+ * holds before its time, the last row also after its time.
  */
 
-// A table over time. Times must increase, and all numbers be finite.
+// A table over time. Times must increase, and all numbers must be finite.
 typedef struct lahar_table {
     // Number of rows; 0: no table, the condition is constant.
     int64_t count;
     // Times [s], shape [count]. Read during the call only.
     const double *times;
-    // Values, shape as said where the table is used. Read during the call only.
+    // Values; unit and shape are given where the table is used. Read during the call only.
     const double *values;
 } lahar_table;
 
 /* ---- prescribed_velocity -----------------------------------------------------------------------
  *
- * Velocities prescribed on regions of the grid, constant or by a table over time, named by ids that are never used again.
+ * Velocities prescribed on regions of the grid, constant or by a table over time, named by ids
+ * that are never used again.
  */
 
 // Component of a vector: x.
@@ -1229,18 +1319,21 @@ typedef struct lahar_table {
 // Component of a vector: z.
 #define LAHAR_COMPONENT_Z 4
 
-// A velocity that the nodes in a box have at the end of every step, whatever pulls at them. Fill it with
-// lahar_prescribed_velocity_init, then set `components`, the box and what else is wanted.
+// A velocity that the nodes in a box have at the end of every step, whatever pulls at them. Fill
+// it with lahar_prescribed_velocity_init, then set `components`, the box, and `velocity` or
+// `table`.
 //
-// The box stays where it is in space and holds nodes, not particles: it prescribes what moves through it. It comes after
-// the walls, and where boxes overlap the one that was added last counts.
+// The box is fixed in space and selects nodes, not particles: the velocity is prescribed to
+// whatever moves through the box. It is applied after the walls. Where boxes overlap, the one that
+// was added last counts.
 typedef struct lahar_prescribed_velocity {
     // sizeof(lahar_prescribed_velocity); set by lahar_prescribed_velocity_init.
     uint32_t struct_size;
-    // The components that are prescribed, a sum of LAHAR_COMPONENT_*; has no default. The others stay free.
+    // The components that are prescribed, a sum of LAHAR_COMPONENT_*; has no default. The others
+    // stay free.
     int32_t components;
-    // Lower corner of the box [m], shape [3]; may be -infinity; has no default. Nodes on its faces, to 1e-9 of the spacing,
-    // are inside.
+    // Lower corner of the box [m], shape [3]; may be -infinity; has no default. Nodes on its
+    // faces, within 1e-9 spacings, are inside.
     double box_min[3];
     // Upper corner of the box [m], shape [3]; may be infinity; has no default.
     double box_max[3];
@@ -1257,11 +1350,13 @@ typedef struct lahar_prescribed_velocity {
 // Thread: any
 lahar_status lahar_prescribed_velocity_init(lahar_prescribed_velocity *condition, int64_t size);
 
-// Adds a prescribed velocity. The stable time step keeps it, too, below `cfl` spacings a step.
+// Adds a prescribed velocity. It limits the stable time step: a node moves at most `cfl` spacings
+// in a step.
 //
 // `condition`: copied, with its table. `id`: gets the id; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (components; a box that is not
-// set or inverted; a velocity that is not finite; a row of the table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT
+// (components; a box that is not set or inverted; a velocity that is not finite; a row of the
+// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_prescribed_velocity_add(lahar_world *world,
                                            const lahar_prescribed_velocity *condition,
@@ -1269,11 +1364,13 @@ lahar_status lahar_prescribed_velocity_add(lahar_world *world,
 
 // Removes a prescribed velocity. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_prescribed_velocity_remove(lahar_world *world, int64_t id);
 
-// Force of a prescribed velocity on the material in the last step: the momentum it gave over the time step.
+// Force of a prescribed velocity on the material in the last step: the momentum that it added,
+// divided by the time step; 0 before the first step with it.
 //
 // `force`: written [N], shape [3].
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
@@ -1282,17 +1379,21 @@ lahar_status lahar_prescribed_velocity_reaction(const lahar_world *world, int64_
 
 /* ---- traction ----------------------------------------------------------------------------------
  *
- * Tractions on the surfaces of bodies, constant or by a table over time, named by ids that are never used again.
+ * Tractions on the surfaces of bodies, constant or by a table over time, named by ids that are
+ * never used again.
  */
 
-// A traction on a plane surface of a body. Fill it with lahar_traction_init, then set `body`, the normal, the box and the
-// traction.
+// A traction on a plane surface of a body. Fill it with lahar_traction_init, then set `body`, the
+// normal, the box and the traction.
 //
-// It is a dead load: force per area of the surface as it was when the body was added, in a fixed direction. The particles
-// with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
-// particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
-// centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
-// wide, or with axial symmetry a radian. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+// It is a dead load: a force per area of the surface as it was when the body was added, in a fixed
+// direction. The particles whose centres are in the box when the traction is added carry it from
+// then on, wherever they move. The box must contain only the outermost layer of particles, whose
+// centres are half a particle's edge below the surface. Each particle passes its share to the grid
+// at its outer face and not at its centre, so that the stress is right up to the last cell. In two
+// dimensions the surface is 1 m wide, or one radian with axial symmetry. The edge lengths of the
+// particles must be known: of a body that was added as a shape they are, for arrays give them in
+// `size` of lahar_particles.
 typedef struct lahar_traction {
     // sizeof(lahar_traction); set by lahar_traction_init.
     uint32_t struct_size;
@@ -1308,10 +1409,11 @@ typedef struct lahar_traction {
     double box_min[3];
     // Upper corner of the box [m], shape [3]; may be infinity; has no default.
     double box_max[3];
-    // The traction vector [Pa], shape [3], finite; default 0. A pressure p on a surface whose normal points to larger y
-    // is (0, -p, 0).
+    // The traction vector [Pa], shape [3], finite; default 0. A pressure p on a surface whose
+    // normal points to larger y is (0, -p, 0).
     double traction[3];
-    // Factors of the traction over time: values [-], shape [count]. Default: no table, the factor is 1.
+    // Factors of the traction over time: values [-], shape [count]. Default: no table, the factor
+    // is 1.
     lahar_table factors;
 } lahar_traction;
 
@@ -1322,30 +1424,30 @@ typedef struct lahar_traction {
 // Thread: any
 lahar_status lahar_traction_init(lahar_traction *traction, int64_t size);
 
-// Adds a traction. It goes when its body is removed.
+// Adds a traction. It is removed together with its body.
 //
 // `traction`: copied, with its table. `id`: gets the id; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
-// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle, or with particles behind
-// one another along the normal; particles whose edge lengths are not known; a traction that is not finite; a row of the
-// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle,
+// or with particles behind one another along the normal; particles whose edge lengths are not
+// known; a traction that is not finite; a row of the table), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
-lahar_status lahar_traction_add(lahar_world *world,
-                                const lahar_traction *traction,
-                                int64_t *id);
+lahar_status lahar_traction_add(lahar_world *world, const lahar_traction *traction, int64_t *id);
 
 // Removes a traction. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_traction_remove(lahar_world *world, int64_t id);
 
-// What a traction loads.
+// What a traction loads, and with which force.
 //
 // `particles`: gets the number of particles that carry it; may be NULL.
-// `area`: gets their area [m^2]; may be NULL.
-// `force`: written, the force on the body in the last step, or of a query that mapped it to the grid since [N],
-// shape [3]; 0 before.
+// `area`: gets the area of the loaded surface [m^2]; may be NULL.
+// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first step
+// with the traction. Queries of the grid do not change it.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_traction_force(const lahar_world *world,
@@ -1356,11 +1458,11 @@ lahar_status lahar_traction_force(const lahar_world *world,
 
 /* ---- statics -----------------------------------------------------------------------------------
  *
- * Statics by dynamics: gravity by a table, how far a world is from equilibrium, steps until it is reached, initial
- * stresses.
+ * Statics by dynamics: gravity by a table, the distance of a world from equilibrium, steps until
+ * equilibrium is reached, initial stresses.
  */
 
-// Steps between two looks at the equilibrium in lahar_world_settle.
+// Steps between two checks of the equilibrium in lahar_world_settle.
 #define LAHAR_STEPS_BETWEEN_CHECKS 50
 
 // How far a world is from equilibrium.
@@ -1371,23 +1473,26 @@ typedef struct lahar_equilibrium {
     int32_t reserved;
     // Sum of m v^2 / 2 of the particles [J].
     double kinetic_energy;
-    // Strain energy of the particles [J], as in lahar_totals: what the stresses worked since the start.
+    // Strain energy of the particles [J], as in lahar_totals.
     double strain_energy;
-    // Kinetic energy over the energy of the stresses [-]: the larger of |strain_energy| and the sum of
-    // V s:s / (2 rho c^2), with the stress s and the largest wave speed c, which knows of initial stresses too. 0 at
-    // rest.
+    // kinetic_energy divided by the energy of the stresses [-]. The latter is the larger of
+    // |strain_energy| and the sum of V s:s / (2 rho c^2) over the particles, with the volume V, the
+    // stress s, the density rho and the largest wave speed c; the sum includes initial stresses. 0
+    // at rest.
     double kinetic_ratio;
-    // Sum over the nodes of |F| [N], with the force F of stresses, tractions and gravity that neither walls nor prescribed
-    // velocities take up. Damping is no part of it: it vanishes in equilibrium.
+    // Sum of |F| over the nodes [N]: F is the force of stresses, tractions and gravity that
+    // neither walls nor prescribed velocities take up. Damping is not included: it is 0 in
+    // equilibrium.
     double unbalanced_force;
-    // What loads the world [N]: the sum over the nodes of m |g|, the forces of the tractions, and the sum over the
-    // nodes of the reactions of prescribed velocities. If all these are 0, the sum of the reactions of walls.
+    // Load on the world [N]: the sum over the nodes of m |g|, plus the forces of the tractions,
+    // plus the sum over the nodes of the reactions of prescribed velocities. If all these are 0,
+    // the sum of the reactions of walls.
     double external_force;
-    // unbalanced_force over external_force [-]. 0 if nothing is unbalanced.
+    // unbalanced_force divided by external_force [-]; 0 if unbalanced_force is 0.
     double unbalanced_ratio;
 } lahar_equilibrium;
 
-// When a world counts as settled. Fill it with lahar_settle_criteria_init.
+// Criteria for a world to be settled. Fill it with lahar_settle_criteria_init.
 typedef struct lahar_settle_criteria {
     // sizeof(lahar_settle_criteria); set by lahar_settle_criteria_init.
     uint32_t struct_size;
@@ -1399,7 +1504,8 @@ typedef struct lahar_settle_criteria {
     double unbalanced_ratio;
     // Most steps, >= 1; default 1000000.
     int64_t max_steps;
-    // Time of the world at which to give up [s], after the present one; default infinity.
+    // Time of the world at which to stop without equilibrium [s], later than now; default
+    // infinity.
     double until;
 } lahar_settle_criteria;
 
@@ -1407,41 +1513,49 @@ typedef struct lahar_settle_criteria {
 typedef struct lahar_settle_result {
     // sizeof(lahar_settle_result); set by the host.
     uint32_t struct_size;
-    // 1: both criteria hold; 0: steps or time ran out before.
+    // 1: both criteria are met; 0: `max_steps` or `until` was reached before.
     int32_t converged;
     // Number of committed steps.
     int64_t steps;
     // Time that was reached [s].
     double time;
-    // `kinetic_ratio` of lahar_equilibrium at the last look [-].
+    // `kinetic_ratio` of lahar_equilibrium at the last check [-].
     double kinetic_ratio;
-    // `unbalanced_ratio` of lahar_equilibrium at the last look [-].
+    // `unbalanced_ratio` of lahar_equilibrium at the last check [-].
     double unbalanced_ratio;
 } lahar_settle_result;
 
-// Sets gravity by a table over time, piecewise linear, from the next step on: a ramp, a shaking. A step takes it at its
-// middle, and stable_dt counts with the largest that can come in it. lahar_world_set_gravity brings constant gravity back.
+// Sets gravity by a table over time, piecewise linear, from the next step on: for a ramp or an
+// earthquake. A step uses the value at the middle of the step; lahar_world_stable_dt uses the
+// largest value that may occur in the step. lahar_world_set_gravity replaces the table by constant
+// gravity.
 //
-// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2], shape [count, 3].
-// Before the first row and after the last one the values of that row hold.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not increase, a value that is not
-// finite; the text names the row), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2],
+// shape [count, 3]. The first row also holds before its time, the last row also after its time. In
+// two dimensions values[3 * row + 2] is ignored.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not
+// increase, a value that is not finite; the message names the row), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_world_set_gravity_table(lahar_world *world,
                                            int64_t count,
                                            const double *times,
                                            const double *values);
 
-// Tells how far a world is from equilibrium, by the forces of the last step; before the first step, and after an initial
-// stress was set, by those of the particles as they are. Costs about as much as a part of a step.
+// Reports how far a world is from equilibrium. The forces are those on the grid, which shows the
+// particles and loads as they are: of the last step, or, if particle fields, tractions or bodies
+// were changed since, mapped anew. Particles may be reordered by that, so that read views opened
+// before become stale (LAHAR_ERROR_VIEW_STALE). What is written through a view counts once all
+// write views of the world are freed. Costs less than a step.
 //
 // `equilibrium`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a model has no wave speed for the
-// present state), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN (an open write view while particles
-// have to be sorted), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
+// model has no wave speed for the present state), LAHAR_ERROR_BUSY. If the grid has to be mapped,
+// also LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
+// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step), and LAHAR_ERROR_BUSY
+// also while another thread runs a query.
 // Thread: callback-ok
-lahar_status lahar_world_equilibrium(const lahar_world *world,
-                                     lahar_equilibrium *equilibrium);
+lahar_status lahar_world_equilibrium(const lahar_world *world, lahar_equilibrium *equilibrium);
 
 // Fills the criteria with their defaults.
 //
@@ -1450,31 +1564,38 @@ lahar_status lahar_world_equilibrium(const lahar_world *world,
 // Thread: any
 lahar_status lahar_settle_criteria_init(lahar_settle_criteria *criteria, int64_t size);
 
-// Steps of the stable length until the world is in equilibrium, or until steps or time have run out, which is no error:
-// `converged` tells. It looks every LAHAR_STEPS_BETWEEN_CHECKS steps, and does not stop before the last row of every table in
-// use has passed. Set lahar_world_set_damping before, for instance to 0.3 to 0.7, or nothing comes to rest.
+// Makes steps of the stable length until the world is in equilibrium, or until `max_steps` or
+// `until` is reached. The latter is no error: `converged` is then 0. Equilibrium is checked every
+// LAHAR_STEPS_BETWEEN_CHECKS steps, and not accepted before the time of the last row of every
+// table in use. Set damping with lahar_world_set_damping before, for instance 0.3 to 0.7: without
+// damping the world does not come to rest.
 //
-// `criteria`: copied; NULL: the defaults. `result`: written, on failure too; the host has set `struct_size`; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not positive, and if the stable step
-// is infinite and `until` too. A positive status means that no partial step was committed.
+// `criteria`: copied; NULL: the defaults.
+// `result`: written, also if a step fails; the host has set `struct_size`; may be NULL.
+// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not
+// positive, and if both the stable step and `until` are infinite. A positive status means that no
+// partial step was committed.
 // Thread: owner
 lahar_status lahar_world_settle(lahar_world *world,
                                 const lahar_settle_criteria *criteria,
                                 lahar_settle_result *result);
 
-// Gives the particles of a body the stress of level ground at rest: at the depth z below the surface the stress along
-// gravity is -unit_weight z, along the other two axes k0 times that; shear is 0, and so is all stress above the surface.
-// The model derives its state from the stress, as when a body is added, so that what it remembered is lost.
+// Sets the stresses of a body to those of level ground at rest: at the depth z below the surface
+// the stress along gravity is -unit_weight z, and along the other two axes k0 times that. Shear
+// stresses are 0, and above the surface all stresses are 0. The model derives its state variables
+// from the stress, as when a body is added; their old values are lost.
 //
-// A field of the host's own: give `stress` in lahar_particles, or write the field "stress" and call
-// lahar_body_init_state.
+// To set other initial stresses, give `stress` in lahar_particles, or write the field "stress" and
+// call lahar_body_init_state.
 //
 // `surface_level`: coordinate of the surface along the axis of gravity [m].
-// `unit_weight`: [N/m^3], > 0; or 0: mass over volume of the whole body, times gravity at the present time.
+// `unit_weight`: [N/m^3], > 0; or 0: mass divided by volume of the whole body, times gravity at
+// the present time.
 // `k0`: ratio of horizontal to vertical stress [-], >= 0.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity is 0 at the present time or
-// not along an axis; a value out of its range; the model refuses the stress), LAHAR_ERROR_UNSUPPORTED (the stress of the
-// model follows from the deformation gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
+// is 0 at the present time or not along an axis; a value out of its range; the model refuses the
+// stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
+// gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_set_k0_stress(lahar_world *world,
                                       int64_t body,
@@ -1482,23 +1603,33 @@ lahar_status lahar_body_set_k0_stress(lahar_world *world,
                                       double unit_weight,
                                       double k0);
 
-// Lets the model of a body derive its state variables anew from the present stresses, as when the body was added: for
-// instance the volume ratio of a fluid from its pressure. What it remembered is lost. To be called after the host wrote
-// the field "stress".
+// Makes the model of a body derive its state variables anew from the present stresses, as when the
+// body was added: for instance the volume ratio of a fluid from its pressure. The old values of
+// the state variables are lost. Call it after writing the field "stress".
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the model refuses the stress; the old
-// state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
+// model refuses the stress; the old state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
-lahar_status lahar_body_init_state(lahar_world *world,
-                                   int64_t body);
+lahar_status lahar_body_init_state(lahar_world *world, int64_t body);
 
 /* ---- grid --------------------------------------------------------------------------------------
  *
- * The sparse background grid: blocks of nodes that follow the material. It shows the last committed step; before the
- * first step, or after bodies came or went, mass and momentum as the particles map them.
+ * The sparse background grid: blocks of nodes that follow the material.
+ *
+ * The grid shows the particles and loads as they are. After a step it holds the result of that
+ * step. If particle fields, tractions or bodies were changed since, or before the first step, the
+ * next query of blocks, nodes or node values maps mass, momentum and forces to the grid anew.
+ * Particles may be reordered by that, so that read views opened before become stale
+ * (LAHAR_ERROR_VIEW_STALE). What is written through a view counts once all write views of the
+ * world are freed.
+ *
+ * A query that has to map the grid may also fail with LAHAR_ERROR_VIEW_OPEN (a write view is
+ * open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY or LAHAR_ERROR_THREADS, as a step
+ * may. It needs the world for itself: LAHAR_ERROR_BUSY is returned also while another thread runs
+ * a query. A poisoned world shows its grid as the failed call left it.
  */
 
-// Size of the grid, and what the last step changed.
+// Size of the grid, and how the last step changed it.
 typedef struct lahar_grid_statistics {
     // sizeof(lahar_grid_statistics); set by the host.
     uint32_t struct_size;
@@ -1525,39 +1656,42 @@ typedef struct lahar_grid_statistics {
 // Thread: callback-ok
 lahar_status lahar_grid_stats(const lahar_world *world, lahar_grid_statistics *statistics);
 
-// Integer coordinates of the active blocks, in block order. Block b holds the nodes with the indices
-// b * block_edge to b * block_edge + block_edge - 1 along each axis; coordinates may be negative.
+// Integer coordinates of the active blocks, in block order. Block b holds the nodes with the
+// indices b * block_edge to b * block_edge + block_edge - 1 along each axis; coordinates may be
+// negative.
 //
-// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 ask for the count alone.
+// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 to
+// get only the count.
 // `count`: gets the number of active blocks.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
-// (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
+// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_blocks(const lahar_world *world,
                                int64_t capacity,
                                int64_t *coordinates,
                                int64_t *count);
 
-// Number of the node with an integer index. Numbers hold until the next step: the position of the node's block in block
-// order times block_edge^dimension, plus the node's place inside the block.
+// Number of the node with an integer index. The number is the position of the node's block in
+// block order times block_edge^dimension, plus the position of the node inside its block. It is
+// valid until the next step, and until the grid is mapped anew.
 //
-// `index`: shape [3]; the node stands at origin + index * spacing.
+// `index`: shape [3]; the node is at origin + index * spacing [m]. In two dimensions index[2] is
+// ignored.
 // `node`: gets the number, or -1 if the node is not active.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_grid_find_node(const lahar_world *world,
-                                  const int64_t index[3],
-                                  int64_t *node);
+lahar_status lahar_grid_find_node(const lahar_world *world, const int64_t index[3], int64_t *node);
 
 // Integer index of the node with a number: the inverse of lahar_grid_find_node.
 //
-// `index`: written, shape [3].
+// `node`: number of the node. `index`: written, shape [3]; in two dimensions index[2] is 0.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_node_index(const lahar_world *world, int64_t node, int64_t index[3]);
 
 // Number of node fields.
 //
+// `fields`: gets the number.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_field_count(const lahar_world *world, int64_t *fields);
@@ -1566,19 +1700,19 @@ lahar_status lahar_grid_field_count(const lahar_world *world, int64_t *fields);
 //
 // `field`: 0 to lahar_grid_field_count - 1.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index),
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_grid_field_info(const lahar_world *world,
-                                   int64_t field,
-                                   lahar_field_info *info);
+lahar_status lahar_grid_field_info(const lahar_world *world, int64_t field, lahar_field_info *info);
 
 // Copies a node field.
 //
-// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and `count` is `active_nodes`
-// of lahar_grid_statistics.
-// `values`: written, shape [count, components].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
-// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT (count), LAHAR_ERROR_BUSY.
+// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and
+// `count` is `active_nodes` of lahar_grid_statistics.
+// `values`: written, shape [count, components], in the unit of the field.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT
+// (count), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_read(const lahar_world *world,
                              const char *field,
@@ -1586,12 +1720,14 @@ lahar_status lahar_grid_read(const lahar_world *world,
                              const int64_t *nodes,
                              double *values);
 
-// Samples a node field at points: sum of w m q over sum of w m, w the shape function and m the mass of a node.
+// Samples a node field q at points: sum of w m q over the nodes divided by the sum of w m, with
+// the shape function w and the mass m of a node.
 //
 // `count`, `points`: [m], shape [count, dimension].
-// `values`: written, shape [count, components]; zeros where no material is.
-// `inside`: written, shape [count]: 1 where material is, else 0; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
+// `values`: written, shape [count, components], in the unit of the field; zeros where there is no
+// material.
+// `inside`: written, shape [count]: 1 where there is material, else 0; may be NULL.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
 // LAHAR_ERROR_INVALID_ARGUMENT (count, a coordinate that is not finite), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_sample(const lahar_world *world,
@@ -1606,7 +1742,7 @@ lahar_status lahar_grid_sample(const lahar_world *world,
  * Output: sums over the particles, and files.
  */
 
-// In the place of a body's id: all bodies.
+// Stands for all bodies where the id of a body is expected.
 #define LAHAR_ALL_BODIES -1
 
 // Sums over particles.
@@ -1621,15 +1757,15 @@ typedef struct lahar_totals {
     double mass;
     // Momentum [kg m/s], shape [3].
     double momentum[3];
-    // Angular momentum about the origin of space x = 0 [kg m^2/s], shape [3].
+    // Angular momentum about the point x = 0 [kg m^2/s], shape [3].
     double angular_momentum[3];
     // Kinetic energy [J].
     double kinetic_energy;
-    // Strain energy [J]: the work of the stresses, or what the model stores if it says so.
+    // Strain energy [J]: the work of the stresses, or the stored energy if the model gives it.
     double strain_energy;
-    // Potential energy - m g . x [J], with the present gravity.
+    // Potential energy, the sum of - m g . x [J], with gravity g at the present time.
     double potential_energy;
-    // Centre of mass [m], shape [3].
+    // Centre of mass [m], shape [3]; 0 without particles.
     double center_of_mass[3];
 } lahar_totals;
 
@@ -1637,19 +1773,19 @@ typedef struct lahar_totals {
 //
 // `body`: an id, or LAHAR_ALL_BODIES.
 // `totals`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND,
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_totals *totals);
 
 // Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 //
-// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is
-// replaced whole or not at all.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
-// LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
+// then renamed, so that an existing file is replaced as a whole or not at all.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or
+// does not end in `.vtp`), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 // Thread: callback-ok
-lahar_status lahar_world_write_vtp(const lahar_world *world,
-                                   const char *path);
+lahar_status lahar_world_write_vtp(const lahar_world *world, const char *path);
 
 /* ---- layout: what the library was built with, on 64-bit systems */
 

@@ -1,4 +1,5 @@
-/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
+/* lahar_plugin.h: the interface between lahar and constitutive models. It has types and tables only: a
+ * plugin is not linked with lahar.
  *
  * Generated from plugins/abi by `cargo xtask headers`; do not edit.
  */
@@ -442,7 +443,8 @@ typedef const lahar_plugin_desc *(*lahar_plugin_adapt)(const lahar_host_api *hos
 // [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
 
-// Defined by adapters instead of the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// Defined by adapters instead of the entry: the tables of a plugin made of the foreign library at
+// `path`, or NULL to refuse, after `set_error`.
 // [exclusive; once for each library, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 

@@ -1,5 +1,6 @@
-//! From raw C arguments to checked Rust values. The contract of every function here: a pointer is NULL, or it points to
-//! memory of the host that is valid for the described type until the exported function returns.
+//! From raw C arguments to checked Rust values. The contract of every function here: a pointer is
+//! NULL, or it points to memory of the host that is valid for the described type until the exported
+//! function returns.
 
 use crate::error::{Error, Result, Status};
 use crate::world::host_arrays::Strides;
@@ -7,7 +8,7 @@ use std::ffi::{CStr, CString, c_char};
 use std::mem::MaybeUninit;
 use std::ptr::NonNull;
 
-/// Largest `struct_size` that is believed; anything above is an uninitialised field.
+/// Largest `struct_size` that is accepted; a larger one is an uninitialised field.
 const LARGEST_STRUCT: usize = 4096;
 
 pub(super) fn null(name: &str) -> Error {
@@ -25,13 +26,14 @@ fn check<T>(pointer: *const T, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// A place in the host's memory to write one value to.
+/// A variable of the host to write one value to.
 pub(super) struct Out<T>(NonNull<T>);
 
 impl<T: Copy> Out<T> {
     /// Writes the value.
     pub(super) fn set(&self, value: T) {
-        // SAFETY: `out` checked for NULL and alignment, and its caller vouched that the memory may be written.
+        // SAFETY: `out` checked for NULL and alignment, and by contract of its caller the memory
+        // may be written.
         unsafe { self.0.as_ptr().write(value) };
     }
 }
@@ -51,12 +53,12 @@ pub(super) unsafe fn optional_out<T>(pointer: *mut T, name: &str) -> Result<Opti
     unsafe { out(pointer, name) }.map(Some)
 }
 
-/// The place for a new handle, set to NULL.
+/// The variable for a new handle, set to NULL.
 pub(super) unsafe fn handle_out<T>(pointer: *mut *mut T, name: &str) -> Result<Out<*mut T>> {
     // SAFETY: the contract of this function is that of `out`.
-    let place = unsafe { out(pointer, name) }?;
-    place.set(std::ptr::null_mut());
-    Ok(place)
+    let target = unsafe { out(pointer, name) }?;
+    target.set(std::ptr::null_mut());
+    Ok(target)
 }
 
 /// The object behind a handle or a pointer to a plain struct.
@@ -122,7 +124,8 @@ pub(super) unsafe fn slice_mut<'a, T>(
     }
     check(pointer, name)?;
     check_length::<T>(n, name)?;
-    // SAFETY: not NULL, aligned, of a possible length, and by contract `n` values belong to this call.
+    // SAFETY: not NULL, aligned, of a possible length, and by contract `n` values belong to this
+    // call.
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, n) })
 }
 
@@ -139,7 +142,8 @@ pub(super) fn product(a: usize, b: usize, name: &str) -> Result<usize> {
         .ok_or_else(|| Error::invalid(format!("`{name}`: {a} times {b} values overflow")))
 }
 
-/// Places of `n` points in an array of the host. Both strides 0: interleaved. A scalar needs no component stride.
+/// Layout of `n` points in an array of the host. Both strides 0: interleaved. A scalar needs no
+/// component stride.
 pub(super) fn strides(n: usize, components: usize, given: [i64; 2], name: &str) -> Result<Strides> {
     let [component, point] = given;
     let component = if component == 0 && point != 0 && components == 1 { 1 } else { component };
@@ -150,7 +154,8 @@ pub(super) fn strides(n: usize, components: usize, given: [i64; 2], name: &str) 
 /// A struct of the API that grows: it begins with `struct_size: u32`.
 ///
 /// # Safety
-/// The type is `repr(C)`, begins with a u32, has no padding, and every bit pattern (zero too) is a value of it.
+/// The type is `repr(C)`, begins with a u32, has no padding, and every bit pattern (zero too) is a
+/// value of it.
 pub(super) unsafe trait Grows: Copy {
     /// Name in the header.
     const NAME: &'static str;
@@ -180,14 +185,15 @@ fn check_struct_size<T: Grows>(size: i64) -> Result<usize> {
     }
 }
 
-/// Reads a struct that the host filled: the part that both sides know; an unknown tail must be zero.
+/// Reads a struct that the host filled: the part that both sides know; an unknown tail must be
+/// zero.
 pub(super) unsafe fn read_struct<T: Grows>(pointer: *const T, name: &str) -> Result<T> {
     // SAFETY: the contract of this function is that of `struct_size`.
     let given = unsafe { struct_size(pointer, name) }?;
     let known = given.min(size_of::<T>());
     let mut value = MaybeUninit::<T>::zeroed();
-    // SAFETY: by contract `given` bytes are readable; `known` bytes fit into the value, all bit patterns of which are
-    // valid (`Grows`), the rest being zero.
+    // SAFETY: by contract `given` bytes are readable; `known` bytes fit into the value, all bit
+    // patterns of which are valid (`Grows`), the rest being zero.
     let value = unsafe {
         pointer.cast::<u8>().copy_to_nonoverlapping(value.as_mut_ptr().cast::<u8>(), known);
         value.assume_init()
@@ -233,12 +239,13 @@ pub(super) unsafe fn initialise<T: Grows>(
 }
 
 impl<T: Grows> StructOut<T> {
-    /// Writes the part that both sides know, zero behind it, and keeps the host's `struct_size`.
+    /// Writes the part that both sides know, and zeros behind it; the host's `struct_size` stays.
     pub(super) fn set(&self, value: T) {
         let known = self.given.min(size_of::<T>());
         let bytes = self.pointer.as_ptr().cast::<u8>();
-        // SAFETY: `given` writable bytes stand at the pointer (contract of the constructors), known <= given and
-        // known <= size_of::<T>(); the size field is the first one and was checked for alignment.
+        // SAFETY: `given` writable bytes stand at the pointer (contract of the constructors), known
+        // <= given and known <= size_of::<T>(); the size field is the first one and was checked for
+        // alignment.
         unsafe {
             bytes.write_bytes(0, self.given);
             bytes.copy_from_nonoverlapping((&raw const value).cast::<u8>(), known);
@@ -247,7 +254,8 @@ impl<T: Grows> StructOut<T> {
     }
 }
 
-/// Copies a list to the host. A NULL array or a capacity of 0 asks for the count alone; a short array is not touched.
+/// Copies a list to the host. With NULL and capacity 0 only the count is set; a short array is not
+/// touched.
 pub(super) unsafe fn copy_list<T: Copy>(
     list: &[T],
     per_item: usize,
@@ -268,12 +276,14 @@ pub(super) unsafe fn copy_list<T: Copy>(
         let message = format!("`{name}` has room for {capacity}, but there are {items}");
         return Err(Error::new(Status::BufferTooSmall, message));
     }
-    // SAFETY: by contract `capacity` items are writable, and list.len() values are not more than that.
+    // SAFETY: by contract `capacity` items are writable, and list.len() values are not more than
+    // that.
     unsafe { slice_mut(pointer, list.len(), name) }?.copy_from_slice(list);
     Ok(())
 }
 
-/// Copies a text with its NUL. NULL and capacity 0 ask for the size; a short buffer gets the truncated text.
+/// Copies a text with its NUL. With NULL and capacity 0 only the size is set; a short buffer gets
+/// the truncated text.
 pub(super) unsafe fn copy_text(
     text: &str,
     (buffer, capacity): (*mut c_char, i64),

@@ -1,5 +1,5 @@
-//! Bodies: particles of one material. They are made from the host's arrays or from shapes, and named by ids that are
-//! counted from 0 and never used again.
+//! Bodies: particles of one material. They are made from the host's arrays or from shapes, and
+//! named by ids that are counted from 0 and never used again.
 
 use super::arguments::{
     Grows, array3, copy_list, count, initialise, out, product, read_struct, reference, slice,
@@ -14,20 +14,22 @@ use crate::error::{Error, Result};
 use crate::particles::seeding::{Fill, Region};
 use crate::world::host_arrays::{ParticleArrays, Strided};
 
-/// An array of the host with any layout: component c of point k stands at data[c * component_stride + k * point_stride].
+/// An array of the host with any layout: component c of point k is
+/// data[c * component_stride + k * point_stride].
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_array {
     /// First value; NULL: not given. Read during the call only.
     pub data: *const f64,
-    /// Distance of two components of a point, in doubles. Both strides 0: interleaved, point after point.
+    /// Distance between two components of a point, in doubles. If both strides are 0, the array is
+    /// interleaved: point after point.
     pub component_stride: i64,
-    /// Distance of two points, in doubles.
+    /// Distance between two points, in doubles.
     pub point_stride: i64,
 }
 
-/// Particles from the host's arrays. Fill it with lahar_particles_init, then set `count`, `position`, `volume`, and either
-/// `mass` or `density`.
+/// Particles from the host's arrays. Fill it with lahar_particles_init, then set `count`,
+/// `position`, `volume`, and either `mass` or `density`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_particles {
@@ -37,7 +39,8 @@ pub struct lahar_particles {
     pub reserved: i32,
     /// Number of particles.
     pub count: i64,
-    /// Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and from x = 0.
+    /// Positions [m], shape [count, dimension]; at most 1e8 spacings from the grid's origin and
+    /// from x = 0.
     pub position: lahar_array,
     /// Volumes [m^3], shape [count], > 0; in two dimensions areas times 1 m.
     pub volume: lahar_array,
@@ -45,12 +48,13 @@ pub struct lahar_particles {
     pub mass: lahar_array,
     /// Velocities [m/s], shape [count, dimension]; not given: 0.
     pub velocity: lahar_array,
-    /// Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given: 0.
+    /// Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given:
+    /// 0.
     pub stress: lahar_array,
     /// Mass density [kg/m^3], > 0; used if `mass` is not given.
     pub density: f64,
-    /// Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given: not known. The GIMP shape functions
-    /// and tractions on the body need them.
+    /// Edge lengths of the particles' domains [m], shape [count, dimension], > 0; not given:
+    /// unknown. The GIMP shape functions and tractions on the body need them.
     pub size: lahar_array,
 }
 
@@ -76,7 +80,8 @@ const NO_PARTICLES: lahar_particles = lahar_particles {
     size: NO_ARRAY,
 };
 
-/// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or `mass`.
+/// How a shape is filled with particles. Fill it with lahar_fill_init, then set either `density` or
+/// `mass`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_fill {
@@ -84,14 +89,17 @@ pub struct lahar_fill {
     pub struct_size: u32,
     /// Particles per cell of the grid along each axis, >= 1; default 2.
     pub particles_per_cell: i32,
-    /// Mass density [kg/m^3], > 0; 0: not given. The mass of the body is that of the lattice points inside the shape, each
-    /// with the volume of its part of the lattice: exact for a box; a sphere of radius h, the spacing, may be 10 % off.
+    /// Mass density [kg/m^3], > 0; 0: not given. Each lattice point inside the shape is a particle
+    /// with the volume of its lattice cell. The mass of the body is then exact for a box; for a
+    /// sphere with a radius of one spacing it may be 10 % off.
     pub density: f64,
-    /// Mass of the whole body [kg], > 0; 0: not given. Shared evenly by the particles: the mass is exact.
+    /// Mass of the whole body [kg], > 0; 0: not given. Divided evenly among the particles, so that
+    /// it is exact.
     pub mass: f64,
     /// Velocity of all particles [m/s], shape [3]; default 0.
     pub velocity: [f64; 3],
-    /// Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6]; default 0.
+    /// Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6];
+    /// default 0.
     pub stress: [f64; 6],
 }
 
@@ -142,8 +150,9 @@ pub unsafe extern "C" fn lahar_fill_init(fill: *mut lahar_fill, size: i64) -> la
 ///
 /// `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 /// `body`: gets the id of the new body; must not be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (not finite, not positive, too
-/// far away, strides), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
+/// value that is not finite, not positive or too far away; strides), LAHAR_ERROR_OUT_OF_MEMORY,
+/// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_add_particles(
@@ -212,8 +221,10 @@ unsafe fn strided<'a>(
 
 /// Adds a body that fills a box.
 ///
-/// `min`, `max`: corners [m], shape [3]. Particles stand on a regular lattice, `particles_per_cell` along each axis.
-/// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be NULL.
+/// `min`, `max`: corners [m], shape [3]. Particles are placed on a regular lattice,
+/// `particles_per_cell` along each axis.
+/// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be
+/// NULL.
 /// Errors: as lahar_body_add_particles.
 /// Thread: owner
 ///
@@ -241,8 +252,8 @@ pub unsafe extern "C" fn lahar_body_add_box(
 /// Adds a body that fills a sphere, or a disc in two dimensions.
 ///
 /// `center`: [m], shape [3]. `radius`: [m], > 0.
-/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside, which may be
-/// 10 % off if the radius is the spacing; give `mass` for an exact one.
+/// `fill`: density or mass, velocity, stress. With `density` the mass may be 10 % off if the
+/// radius is one spacing (see lahar_fill); give `mass` for an exact one.
 /// `body`: gets the id of the new body; must not be NULL.
 /// Errors: as lahar_body_add_particles.
 /// Thread: owner
@@ -268,9 +279,10 @@ pub unsafe extern "C" fn lahar_body_add_sphere(
 
 /// Adds a body that fills a simple polygon; two dimensions only.
 ///
-/// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point, in either sense of rotation.
-/// `fill`: density or mass, velocity, stress. With `density` the mass is that of the lattice points inside; give `mass`
-/// for an exact one.
+/// `count`: number of vertices, >= 3. `vertices`: [m], shape [count, 2], point after point,
+/// clockwise or counter-clockwise.
+/// `fill`: density or mass, velocity, stress. With `density` the mass is approximate (see
+/// lahar_fill); give `mass` for an exact one.
 /// `body`: gets the id of the new body; must not be NULL.
 /// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 /// Thread: owner
@@ -311,7 +323,8 @@ unsafe fn add_shape(
     (world, material, fill, body): ShapeArguments,
     region: impl FnOnce(usize) -> Result<Region>,
 ) -> Result<()> {
-    // SAFETY: by contract of the caller each is NULL or a live handle, a filled struct, a writable integer.
+    // SAFETY: by contract of the caller each is NULL or a live handle, a filled struct, a writable
+    // integer.
     let (cell, material, fill, body) = unsafe {
         let material = reference(material, "material");
         (scope.world(world)?, material?, read_struct(fill, "fill")?, out(body, "body")?)
@@ -330,8 +343,8 @@ unsafe fn add_shape(
 
 /// Removes a body. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN,
+/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_remove(world: *mut lahar_world, body: i64) -> lahar_status {
@@ -342,13 +355,16 @@ pub unsafe extern "C" fn lahar_body_remove(world: *mut lahar_world, body: i64) -
     })
 }
 
-/// Switches F-bar on or off for a body; off at first.
+/// Switches F-bar on or off for a body; it is off at first.
 ///
-/// With F-bar the particles in a cell of the grid grow and shrink alike (the trace of the velocity gradient is averaged, weighted by
-/// volume), so that nearly incompressible and plastic material does not lock. It costs an additional gather per step.
+/// With F-bar the particles in a cell of the grid have the same rate of volume change: the trace of
+/// the velocity gradient is averaged, weighted by volume. Nearly incompressible and plastic
+/// materials then do not lock. F-bar costs one more transfer from the grid to the particles in each
+/// step.
+///
 /// `on`: 1 or 0.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY,
-/// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT,
+/// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_set_f_bar(
@@ -389,10 +405,10 @@ pub unsafe extern "C" fn lahar_world_body_count(
 
 /// Ids of the bodies, ascending.
 ///
-/// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+/// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 /// `count`: gets the number of bodies.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
-/// (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
+/// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_bodies(

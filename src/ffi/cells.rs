@@ -1,4 +1,5 @@
-//! What stands behind the handles: shared cells, so that children keep parents alive and handles are freed in any order.
+//! The objects behind the handles: shared cells, so that children own their parents and handles can
+//! be freed in any order.
 
 use super::arguments::reference;
 use super::context::lahar_context;
@@ -23,7 +24,7 @@ impl ContextCell {
         Arc::new(Self { context, last_error: Mutex::new(None) })
     }
 
-    /// Keeps the error for `lahar_context_error_message`.
+    /// Stores the error for `lahar_context_error_message`.
     pub(super) fn set_last_error(&self, error: Error) {
         *self.last_error.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
     }
@@ -39,13 +40,15 @@ impl ContextCell {
 pub(super) enum Change {
     /// Parameters or values: views stay as they are.
     Values,
-    /// A step: particles may be reordered. An open write view forbids it, read views become stale.
+    /// A step, or a refresh of the grid: particles may be reordered. An open write view forbids it,
+    /// read views become stale.
     Step,
-    /// Bodies come or go. Any open view forbids it.
+    /// Bodies are added or removed. Any open view forbids it.
     Bodies,
 }
 
-/// What `World::advance` did: number of committed steps, time that was reached [s], and the error that ended it.
+/// What `World::advance` did: number of committed steps, time that was reached [s], and the error
+/// that ended it.
 pub(super) type Steps = (i64, f64, Result<()>);
 
 /// A world with its lock, and what views need to know.
@@ -93,19 +96,20 @@ impl WorldCell {
         vector
     }
 
-    /// Runs a query beside other queries; busy while the world changes. A poisoned world answers too.
+    /// Runs a query beside other queries; busy while the world changes. A poisoned world answers
+    /// too.
     pub(super) fn query<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
         f(&*self.read()?)
     }
 
-    /// As [`WorldCell::query`], for what depends on the storage order: makes it one that only a step changes
-    /// before.
+    /// As [`WorldCell::query`], for what depends on the storage order: first sorts the particles if
+    /// needed, so that only a step or a refresh changes the order.
     pub(super) fn query_order<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
         self.query_when(World::is_sorted, f)
     }
 
-    /// As [`WorldCell::query`], for what depends on the grid: makes it current before. What is written through
-    /// views counts once all of them are closed.
+    /// As [`WorldCell::query`], for what depends on the grid: first makes it current. What is
+    /// written through views counts once all write views are closed.
     pub(super) fn query_grid<R>(&self, f: impl FnOnce(&World) -> Result<R>) -> Result<R> {
         let written = &self.written_through_views;
         if self.write_views.load(Ordering::Acquire) == 0 && written.load(Ordering::Acquire) {
@@ -135,7 +139,8 @@ impl WorldCell {
         if stale(&world) { Err(busy()) } else { f(&world) }
     }
 
-    /// Runs a mutating call: alone, on a world that is not poisoned, and if the open views allow it.
+    /// Runs a mutating call: alone, on a world that is not poisoned, and if the open views allow
+    /// it.
     pub(super) fn change<R>(
         &self,
         change: Change,
@@ -151,7 +156,7 @@ impl WorldCell {
         self.run(Change::Step, f, |(done, _, _)| *done == 0)
     }
 
-    /// `is_unchanged` tells from the result whether nothing was done.
+    /// `is_unchanged`: whether nothing was done, by the result.
     fn run<R>(
         &self,
         change: Change,
@@ -162,7 +167,8 @@ impl WorldCell {
         let was_fresh = world.is_fresh();
         if change == Change::Step {
             self.context.context.check_process()?;
-            // Before the call, so that views are stale after a panic too; nobody reads it under the write lock.
+            // Before the call, so that views are stale after a panic too; nobody reads it under the
+            // write lock.
             self.generation.fetch_add(1, Ordering::AcqRel);
         }
         let result = f(&mut world);
@@ -196,7 +202,9 @@ impl WorldCell {
         let reading = self.read_views.load(Ordering::Acquire);
         let writing = self.write_views.load(Ordering::Acquire);
         match change {
-            Change::Step if writing > 0 => Err(view_open(writing, "write view", "stepping")),
+            Change::Step if writing > 0 => {
+                Err(view_open(writing, "write view", "a step or a query that maps the grid anew"))
+            }
             Change::Bodies if reading + writing > 0 => {
                 Err(view_open(reading + writing, "view", "adding or removing a body"))
             }
@@ -207,13 +215,14 @@ impl WorldCell {
 
 /// Counts as an open view while it lives.
 pub(super) struct OpenView {
-    /// The world that is looked at; it lives as long as the view.
+    /// The world whose field is viewed; it lives as long as the view.
     pub(super) cell: Arc<WorldCell>,
     write: bool,
 }
 
 impl OpenView {
-    /// Must be called under the world's lock, so that no step comes between the check and the count.
+    /// Must be called under the world's lock, so that no step comes between the check and the
+    /// count.
     pub(super) fn new(cell: &Arc<WorldCell>, write: bool) -> Self {
         let view = Self { cell: cell.clone(), write };
         view.counter().fetch_add(1, Ordering::AcqRel);

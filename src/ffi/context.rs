@@ -1,4 +1,5 @@
-//! Context: threads, log, and the plugins that have been loaded. Everything else is made from a context.
+//! Context: threads, log, and the plugins that have been loaded. Everything else is made from a
+//! context.
 
 use super::arguments::{
     Grows, c_string, count, handle_out, index, null, optional_out, out, struct_out, text,
@@ -15,19 +16,22 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Threads, log and loaded plugins. Freed by lahar_context_free; worlds, materials and views keep it alive.
+/// Threads, log and loaded plugins. Freed by lahar_context_free; it lives as long as one of its
+/// worlds, materials or views.
 pub struct lahar_context {
     pub(super) cell: Arc<ContextCell>,
 }
 
-/// Receives a line of the log: a LAHAR_LOG_ level, a text in UTF-8 without a newline that is valid during the call, and
-/// the pointer given to lahar_context_set_log. Called on the thread that called lahar, in the host's floating-point
-/// environment, with no lock held, just before the function returns. It may call functions tagged `callback-ok` or
-/// `any`. It must not unwind, throw or longjmp.
+/// Receives a line of the log: a level (LAHAR_LOG_*), a text in UTF-8 without a newline, valid only
+/// during the call, and the pointer given to lahar_context_set_log. Called on the thread that
+/// called lahar, in the host's floating-point environment, with no lock held, just before the
+/// function returns. It may call functions tagged `callback-ok` or `any`. It must not unwind, throw
+/// or longjmp.
 pub type lahar_log_callback =
     Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
 
-/// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see lahar_plugin.h.
+/// Entry of a plugin that is linked into the program: its `lahar_plugin_entry_v1`, see
+/// lahar_plugin.h.
 pub type lahar_plugin_entry_callback =
     Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
 
@@ -51,7 +55,7 @@ pub struct lahar_plugin_info {
     pub licence: *const c_char,
     /// Where to find it; may be empty.
     pub url: *const c_char,
-    /// The file that was loaded; of a registered plugin the id in brackets.
+    /// The file that was loaded; for a registered plugin its id in brackets.
     pub path: *const c_char,
 }
 
@@ -63,14 +67,21 @@ unsafe impl Grows for lahar_plugin_info {
 
 /// Makes a context.
 ///
-/// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS, or 1 if it is not
-/// set. With more than 1 the context starts that many threads of its own; they end with it.
-/// `context`: set to the new handle, or to NULL on failure; the host frees it with lahar_context_free.
-/// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) asks for an instruction set, see lahar_context_simd.
-/// LAHAR_CHECK_PLUGINS=1, read once in a process, runs every call of a model on guarded copies, many times slower, and answers a broken
-/// contract, such as a write past the points, with LAHAR_ERROR_PLUGIN_BROKEN and a sentence that says which.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE
-/// (LAHAR_CAPSULES, see lahar_context_set_capsule_folder).
+/// `threads`: number of threads that steps run on; 0: the environment variable LAHAR_NUM_THREADS,
+/// or 1 if it is not set. With more than 1 the context starts that many threads of its own, which
+/// end with the context.
+/// `context`: set to the new handle, or to NULL on failure; the host frees it with
+/// lahar_context_free.
+///
+/// The environment variable LAHAR_SIMD (scalar, avx2 or avx512) selects an instruction set, see
+/// lahar_context_simd. With LAHAR_CHECK_PLUGINS=1, read once in a process, every call of a model
+/// works on guarded copies, which is many times slower. If a model breaks its contract, for
+/// instance by a write past its points, LAHAR_ERROR_PLUGIN_BROKEN is returned and the message says
+/// how.
+///
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the
+/// variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE (LAHAR_CAPSULES, see
+/// lahar_context_set_capsule_folder).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_create(
@@ -79,17 +90,17 @@ pub unsafe extern "C" fn lahar_context_create(
 ) -> lahar_status {
     entry("lahar_context_create", |scope| {
         // SAFETY: the host passes NULL or a writable pointer.
-        let place = unsafe { handle_out(context, "context") }?;
+        let target = unsafe { handle_out(context, "context") }?;
         let threads = count(threads.into(), "threads")?;
         let cell = ContextCell::new(Context::new((threads > 0).then_some(threads))?);
         scope.attach_context(&cell);
-        place.set(Box::into_raw(Box::new(lahar_context { cell })));
+        target.set(Box::into_raw(Box::new(lahar_context { cell })));
         Ok(())
     })
 }
 
-/// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and views are freed too.
-/// NULL is ignored.
+/// Frees the handle. The context ends, and its threads are joined, when its worlds, materials and
+/// views are freed too. NULL is ignored.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_free(context: *mut lahar_context) {
@@ -103,6 +114,7 @@ pub unsafe extern "C" fn lahar_context_free(context: *mut lahar_context) {
 
 /// Number of threads of the context.
 ///
+/// `threads`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
@@ -120,9 +132,10 @@ pub unsafe extern "C" fn lahar_context_thread_count(
 
 /// Name of the instruction set that the context's kernels use: "scalar", "avx2" or "avx512".
 ///
-/// It is the best that the processor has, or what the environment variable LAHAR_SIMD asked for when the context was made; models of
-/// lahar's SDK choose theirs in the same way, once in a process. Results
-/// are the same to the last bit for any number of threads; between instruction sets they differ by round-off.
+/// It is the best one of the processor, or the one that the environment variable LAHAR_SIMD named
+/// when the context was made. Models written with lahar's SDK select theirs in the same way, once
+/// in a process. Results are the same to the last bit for any number of threads; between
+/// instruction sets they differ by round-off.
 ///
 /// The text is static: do not free it. NULL for a NULL context. Cannot fail.
 /// Thread: any
@@ -133,8 +146,10 @@ pub unsafe extern "C" fn lahar_context_simd(context: *const lahar_context) -> *c
     handle.map_or(std::ptr::null(), |context| context.cell.context.isa().name_c().as_ptr())
 }
 
-/// Number of different threads that have run work of the context's worlds so far; small worlds run on one thread.
+/// Number of different threads that have run work of the context's worlds so far; small worlds run
+/// on one thread.
 ///
+/// `threads`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
@@ -150,11 +165,11 @@ pub unsafe extern "C" fn lahar_context_threads_used(
     })
 }
 
-/// The host's pointer on its way back to the host's callback.
+/// The host's pointer, to be passed to the host's callback.
 struct User(*mut c_void);
 
-// SAFETY: the pointer is never followed here; lahar_context_set_log tells the host that it is handed to the callback
-// on every thread that calls lahar.
+// SAFETY: the pointer is never followed here; lahar_context_set_log documents that it is passed to
+// the callback on every thread that calls lahar.
 unsafe impl Send for User {}
 // SAFETY: as above.
 unsafe impl Sync for User {}
@@ -168,8 +183,9 @@ impl User {
 /// Sets where log lines go. Without this call lahar is silent.
 ///
 /// `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
-/// `user`: handed to the callback on every thread that calls functions of this context; lahar does not follow it.
-/// `max_level`: the most detailed level that is wanted, one of LAHAR_LOG_*.
+/// `user`: passed to the callback on every thread that calls functions of this context; lahar does
+/// not follow it.
+/// `max_level`: the most detailed level to be passed on, one of LAHAR_LOG_*.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
 /// Thread: any
 #[unsafe(no_mangle)]
@@ -193,7 +209,8 @@ type Callback = unsafe extern "C" fn(level: i32, message: *const c_char, user: *
 fn sink(callback: Callback, user: User) -> LogSink {
     Arc::new(move |level, line| {
         let line = c_string(line);
-        // SAFETY: the host's callback follows the contract of lahar_log_callback; the text lives during the call.
+        // SAFETY: the host's callback follows the contract of lahar_log_callback; the text lives
+        // during the call.
         call_host(|| unsafe { callback(level, line.as_ptr(), user.pointer()) });
     })
 }
@@ -215,12 +232,14 @@ pub unsafe extern "C" fn lahar_log_stderr(level: i32, message: *const c_char, us
     });
 }
 
-/// Loads a plugin into the context; a plugin that is loaded already is found again. It stays in memory until the
-/// process ends.
+/// Loads a plugin into the context. If it is loaded already, its index is returned again. A plugin
+/// stays in memory until the process ends.
 ///
-/// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager", which is looked for as
-/// lib<name>.so in the folders of the environment variable LAHAR_PLUGIN_PATH, separated by ':', then in lahar/plugins-1 beside this
-/// library. A library that is no plugin but holds an Abaqus UMAT or VUMAT is taken too, if the plugin lahar_umat is found by its name.
+/// `name_or_path`: a path (with a '/') or a bare name such as "lahar_drucker_prager". For a bare
+/// name lib<name>.so is searched in the folders of the environment variable LAHAR_PLUGIN_PATH,
+/// separated by ':', then in lahar/plugins-1 beside this library. A library that is not a plugin
+/// but contains an Abaqus UMAT or VUMAT is accepted too if the plugin lahar_umat is found by its
+/// name.
 /// `plugin`: gets its index in the context; may be NULL.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
 /// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
@@ -246,12 +265,15 @@ pub unsafe extern "C" fn lahar_context_load_plugin(
     })
 }
 
-/// Takes a plugin that is linked into the program; an entry that is registered already is found again.
+/// Registers a plugin that is linked into the program. If its entry is registered already, its
+/// index is returned again.
 ///
-/// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known; the tables that it returns must stay as they are until the
-/// process ends.
-/// `index`: gets its index in the context; may be NULL. lahar_plugin_info tells its id in brackets as its path.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
+/// `plugin`: its entry (see lahar_plugin.h), which is called unless it is known already. The tables
+/// that it returns must not change until the process ends.
+/// `index`: gets its index in the context; may be NULL. `path` of lahar_plugin_info is its id in
+/// brackets.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
+/// LAHAR_ERROR_PLUGIN_REFUSED.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_register_plugin(
@@ -260,7 +282,8 @@ pub unsafe extern "C" fn lahar_context_register_plugin(
     index: *mut i64,
 ) -> lahar_status {
     entry("lahar_context_register_plugin", |scope| {
-        // SAFETY: the host passes NULL or a live handle, an entry that follows the plugin ABI, and a writable integer.
+        // SAFETY: the host passes NULL or a live handle, an entry that follows the plugin ABI, and
+        // a writable integer.
         let (cell, entry, index) = unsafe {
             let plugin = plugin.ok_or_else(|| null("plugin"))?;
             (scope.context(context)?, StaticEntry::c(plugin), optional_out(index, "index")?)
@@ -271,12 +294,15 @@ pub unsafe extern "C" fn lahar_context_register_plugin(
     })
 }
 
-/// Sets the folder to which a step that fails at a point writes a capsule: a small JSON file with the model, its parameters, and all that
-/// the model was given and answered at the first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Files that are
-/// there are kept. The message of the step's error says where the capsule is.
+/// Sets the folder for capsules. If a model fails at a point in a step, the step writes a capsule:
+/// a small JSON file with the model, its parameters, and the input and output of the model at the
+/// first such point, named `lahar-capsule-<model>-<body>-<particle>-<step>.json`. Existing files
+/// are not overwritten. The error message of the step gives the path of the capsule.
 ///
-/// `folder`: a folder that exists; NULL or "": no capsules. At first it is that of the environment variable LAHAR_CAPSULES.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (there is no such folder; nothing has changed).
+/// `folder`: an existing folder; NULL or "": no capsules. A new context has the folder of the
+/// environment variable LAHAR_CAPSULES.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (the folder does not exist;
+/// nothing has changed).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_set_capsule_folder(
@@ -294,6 +320,7 @@ pub unsafe extern "C" fn lahar_context_set_capsule_folder(
 
 /// Number of plugins that are loaded into the context.
 ///
+/// `plugins`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]

@@ -1,9 +1,10 @@
 //! The one boundary between C and the engine.
 //!
-//! [`entry`] runs the body of every exported function that can fail. On the way in it silences the panic hook for this
-//! thread and sets the default floating-point environment. On the way out it turns an error or a panic into a status,
-//! keeps the error for `lahar_last_error_*` and for the context, poisons the world after a panic, and delivers the log
-//! lines that were queued. By then every lock is released, so callbacks may call the library.
+//! [`entry`] runs the body of every exported function that can fail. On the way in it silences the
+//! panic hook for this thread and sets the default floating-point environment. On the way out it
+//! turns an error or a panic into a status, records the error for `lahar_last_error_*` and for the
+//! context, poisons the world after a panic, and delivers the log lines that were queued. By then
+//! every lock is released, so callbacks may call the library.
 
 use super::cells::{ContextCell, WorldCell};
 use super::status::lahar_status;
@@ -17,12 +18,13 @@ use std::sync::{Arc, Mutex};
 
 thread_local! {
     /// Where the last silent panic of this thread happened.
-    static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
+    static PANIC_LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
     /// The error of the last call of this thread that failed.
     static LAST_ERROR: RefCell<Option<Error>> = const { RefCell::new(None) };
 }
 
-/// The objects that a call works on. They are kept alive until the log is flushed, even if a callback frees the handle.
+/// The objects that a call works on. They live until the log is flushed, even if a callback frees
+/// the handle.
 #[derive(Default)]
 pub(super) struct Scope {
     context: Option<Arc<ContextCell>>,
@@ -52,7 +54,7 @@ impl Scope {
             Ok(()) => Status::Ok,
             Err(mut error) => {
                 error.message = format!("{function}: {}", error.message);
-                self.keep(error)
+                self.record_error(error)
             }
         };
         if let Some(context) = &self.context {
@@ -61,7 +63,7 @@ impl Scope {
         status
     }
 
-    fn keep(&self, error: Error) -> Status {
+    fn record_error(&self, error: Error) -> Status {
         let status = error.status;
         if let Some(context) = &self.context {
             context.set_last_error(error.clone());
@@ -99,7 +101,7 @@ pub(super) fn status_only(body: impl FnOnce() -> Result<()>) -> lahar_status {
     status as lahar_status
 }
 
-/// Calls a function of the host: in its floating-point environment, and with its panics its own.
+/// Calls a function of the host: in its floating-point environment, and with its own panic hook.
 pub(super) fn call_host<R>(f: impl FnOnce() -> R) -> R {
     platform::aloud(|| environment::with_host(f))
 }
@@ -109,7 +111,8 @@ pub(super) fn last_error() -> Option<Error> {
     LAST_ERROR.try_with(|last| last.borrow().clone()).unwrap_or(None)
 }
 
-/// Once in a process: puts a hook before the present one that is silent on threads inside the library.
+/// Installs, once in a process, a panic hook that is silent on threads inside the library and calls
+/// the previous hook on others.
 fn install_hook() {
     static INSTALLED: Mutex<bool> = Mutex::new(false);
     thread_local!(static SEEN: Cell<bool> = const { Cell::new(false) });
@@ -124,8 +127,8 @@ fn install_hook() {
             if !platform::is_silent() {
                 previous(info);
             } else {
-                let place = info.location().map(|at| format!(" at {}:{}", at.file(), at.line()));
-                let _ = PANIC_PLACE.try_with(|last| last.replace(place));
+                let location = info.location().map(|at| format!(" at {}:{}", at.file(), at.line()));
+                let _ = PANIC_LOCATION.try_with(|last| last.replace(location));
             }
         }));
         *installed = true;
@@ -139,10 +142,10 @@ fn panic_error(payload: Box<dyn Any + Send>) -> Error {
         (_, Some(text)) => text.as_str(),
         _ => "no message",
     };
-    let place = PANIC_PLACE.try_with(|last| last.take()).unwrap_or(None).unwrap_or_default();
+    let location = PANIC_LOCATION.try_with(|last| last.take()).unwrap_or(None).unwrap_or_default();
     Error::new(
         Status::Panic,
-        format!("a defect of lahar was caught{place}: {text}; please report it"),
+        format!("a defect of lahar was caught{location}: {text}; please report it"),
     )
 }
 
@@ -154,7 +157,7 @@ mod tests {
     fn a_panic_becomes_a_status_and_a_message_and_the_next_call_works() {
         let status = entry("lahar_test", |_| panic!("number {}", 7));
         assert_eq!(status, Status::Panic as i32);
-        let message = last_error().expect("an error is kept").message;
+        let message = last_error().expect("a recorded error").message;
         assert!(message.starts_with("lahar_test: a defect of lahar was caught at "), "{message}");
         assert!(message.contains("number 7"), "{message}");
         assert_eq!(entry("lahar_test", |_| Ok(())), 0);

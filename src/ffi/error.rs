@@ -1,5 +1,5 @@
-//! The last error: a text for people and a struct for programs. A failed call keeps its error for the calling thread
-//! and for the context; a call that succeeds does not clear it.
+//! The last error: a text for people and a struct for programs. A call that fails records its error
+//! for the calling thread and for the context; a call that succeeds does not clear it.
 
 use super::arguments::{Grows, copy_text, optional_out, reference, struct_out};
 use super::context::lahar_context;
@@ -38,9 +38,11 @@ fn message(error: &Option<Error>) -> &str {
     error.as_ref().map_or("", |error| error.message.as_str())
 }
 
-/// Text of the last error of the calling thread: which function, what was expected, what was received, what to do.
+/// Text of the last error of the calling thread: which function, what was expected, what was
+/// received, what to do.
 ///
-/// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0, to ask for the size.
+/// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0,
+/// to ask for the size.
 /// `needed`: gets the size of the text with its NUL; may be NULL.
 /// Errors: LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated), LAHAR_ERROR_NULL_ARGUMENT,
 /// LAHAR_ERROR_INVALID_ARGUMENT (negative capacity). None of them changes the last error.
@@ -83,7 +85,8 @@ pub unsafe extern "C" fn lahar_last_error_info(info: *mut lahar_error_info) -> l
     })
 }
 
-/// Text of the last error of any call on this context, its worlds, materials and views, from any thread.
+/// Text of the last error of any call on this context, its worlds, materials and views, from any
+/// thread.
 ///
 /// `buffer`, `capacity`, `needed`, errors: as in lahar_last_error_message.
 /// Thread: any

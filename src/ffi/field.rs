@@ -1,5 +1,6 @@
-//! Particle fields: position, velocity, stress and so on, and every state variable of the body's model, by name. The
-//! functions here copy, in the order of insertion (by particle id); views show the memory itself.
+//! Particle fields: position, velocity, stress and so on, and every state variable of the body's
+//! model, by name. The functions of this section copy, in the order of particle ids; views give
+//! access to the memory itself.
 
 use super::arguments::{
     Grows, copy_list, count, index, out, slice, slice_mut, strides, struct_out, text,
@@ -73,7 +74,8 @@ pub unsafe extern "C" fn lahar_body_field_count(
 ///
 /// `field`: 0 to lahar_body_field_count - 1.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or index), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or
+/// index), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_field_info(
@@ -94,8 +96,8 @@ pub unsafe extern "C" fn lahar_body_field_info(
 /// Index of the field of this name.
 ///
 /// `field`: gets the index.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
-/// closest name), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
+/// message names the closest one), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_find_field(
@@ -106,9 +108,9 @@ pub unsafe extern "C" fn lahar_body_find_field(
 ) -> lahar_status {
     entry("lahar_body_find_field", |scope| {
         // SAFETY: the host passes NULL or a live handle, a text and a writable integer.
-        let (cell, name, place) =
+        let (cell, name, target) =
             unsafe { (scope.world(world)?, text(name, "name")?, out(field, "field")?) };
-        place.set(cell.query(|w| {
+        target.set(cell.query(|w| {
             let found = w.field_info(body, name)?;
             Ok(w.fields(body)?.iter().position(|f| f.name == found.name).map_or(-1, |i| i as i64))
         })?);
@@ -116,7 +118,7 @@ pub unsafe extern "C" fn lahar_body_find_field(
     })
 }
 
-/// Places in the host's array for a field of a body.
+/// Layout of the host's array for a field of a body.
 fn field_strides(
     cell: &WorldCell,
     body: i64,
@@ -150,10 +152,12 @@ fn check_count(given: i64, particles: usize) -> Result<()> {
 /// Copies a field to the host, in the order of particle ids.
 ///
 /// `count`: number of particles of the body.
-/// `values`: component c of particle k is written to values[c * component_stride + k * point_stride]; both strides 0:
-/// interleaved, shape [count, components].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the message tells the
-/// closest name), LAHAR_ERROR_BUFFER_TOO_SMALL (count), LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
+/// `values`: component c of particle k is written to values[c * component_stride + k *
+/// point_stride], in the unit of the field. If both strides are 0, the array is interleaved, shape
+/// [count, components].
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
+/// message names the closest one), LAHAR_ERROR_BUFFER_TOO_SMALL (count),
+/// LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_read(
@@ -178,12 +182,13 @@ pub unsafe extern "C" fn lahar_body_read(
 
 /// Copies a field from the host, in the order of particle ids.
 ///
-/// A value that is not finite is refused by this call, with nothing written. Masses and volumes that are not positive and
-/// positions outside the grid are found before the next step, which answers LAHAR_ERROR_NON_FINITE_INPUT until the host
-/// writes good ones.
+/// A value that is not finite is refused by this call, and nothing is written. Masses and volumes
+/// that are not positive and positions outside the grid are found by the next step, which returns
+/// LAHAR_ERROR_NON_FINITE_INPUT until the host writes valid ones.
+///
 /// `count`, `values`, strides: as in lahar_body_read.
-/// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite, LAHAR_ERROR_READ_ONLY,
-/// LAHAR_ERROR_POISONED.
+/// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
+/// LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_write(
@@ -205,12 +210,17 @@ pub unsafe extern "C" fn lahar_body_write(
     })
 }
 
-/// Ids of a body's particles in storage order, the order of views: the k-th value of a view belongs to ids[k].
+/// Ids of a body's particles in storage order, the order of views: the k-th value of a view belongs
+/// to ids[k]. If bodies were added or removed since the last step, the particles are first mapped
+/// to the grid and may be reordered by that.
 ///
-/// `capacity`, `ids`: room for so many ids; NULL and 0 ask for the count alone.
+/// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 /// `count`: gets the number of particles.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-/// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative
+/// capacity), LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched),
+/// LAHAR_ERROR_BUSY; if the particles have to be mapped also LAHAR_ERROR_VIEW_OPEN (a write view is
+/// open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see
+/// lahar_world_step).
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_ids(

@@ -1,5 +1,16 @@
-//! The sparse background grid: blocks of nodes that follow the material. It shows the last committed step; before the
-//! first step, or after bodies came or went, mass and momentum as the particles map them.
+//! The sparse background grid: blocks of nodes that follow the material.
+//!
+//! The grid shows the particles and loads as they are. After a step it holds the result of that
+//! step. If particle fields, tractions or bodies were changed since, or before the first step, the
+//! next query of blocks, nodes or node values maps mass, momentum and forces to the grid anew.
+//! Particles may be reordered by that, so that read views opened before become stale
+//! (LAHAR_ERROR_VIEW_STALE). What is written through a view counts once all write views of the
+//! world are freed.
+//!
+//! A query that has to map the grid may also fail with LAHAR_ERROR_VIEW_OPEN (a write view is
+//! open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY or LAHAR_ERROR_THREADS, as a step
+//! may. It needs the world for itself: LAHAR_ERROR_BUSY is returned also while another thread runs
+//! a query. A poisoned world shows its grid as the failed call left it.
 
 use super::arguments::{
     Grows, copy_list, count, index, out, product, reference, slice, slice_mut, struct_out, text,
@@ -13,7 +24,7 @@ use crate::particles::FieldInfo;
 use crate::world::World;
 use std::ffi::c_char;
 
-/// Size of the grid, and what the last step changed.
+/// Size of the grid, and how the last step changed it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_grid_statistics {
@@ -53,8 +64,9 @@ pub unsafe extern "C" fn lahar_grid_stats(
 ) -> lahar_status {
     entry("lahar_grid_stats", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
-        let (cell, place) = unsafe { (scope.world(world)?, struct_out(statistics, "statistics")?) };
-        place.set(cell.query_grid(|w| Ok(statistics_of(w)))?);
+        let (cell, target) =
+            unsafe { (scope.world(world)?, struct_out(statistics, "statistics")?) };
+        target.set(cell.query_grid(|w| Ok(statistics_of(w)))?);
         Ok(())
     })
 }
@@ -73,13 +85,15 @@ fn statistics_of(world: &World) -> lahar_grid_statistics {
     }
 }
 
-/// Integer coordinates of the active blocks, in block order. Block b holds the nodes with the indices
-/// b * block_edge to b * block_edge + block_edge - 1 along each axis; coordinates may be negative.
+/// Integer coordinates of the active blocks, in block order. Block b holds the nodes with the
+/// indices b * block_edge to b * block_edge + block_edge - 1 along each axis; coordinates may be
+/// negative.
 ///
-/// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 ask for the count alone.
+/// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 to
+/// get only the count.
 /// `count`: gets the number of active blocks.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity), LAHAR_ERROR_BUFFER_TOO_SMALL
-/// (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
+/// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_blocks(
@@ -103,10 +117,12 @@ pub unsafe extern "C" fn lahar_grid_blocks(
     })
 }
 
-/// Number of the node with an integer index. Numbers hold until the next step: the position of the node's block in block
-/// order times block_edge^dimension, plus the node's place inside the block.
+/// Number of the node with an integer index. The number is the position of the node's block in
+/// block order times block_edge^dimension, plus the position of the node inside its block. It is
+/// valid until the next step, and until the grid is mapped anew.
 ///
-/// `index`: shape [3]; the node stands at origin + index * spacing.
+/// `index`: shape [3]; the node is at origin + index * spacing [m]. In two dimensions index[2] is
+/// ignored.
 /// `node`: gets the number, or -1 if the node is not active.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
@@ -136,7 +152,7 @@ pub unsafe extern "C" fn lahar_grid_find_node(
 
 /// Integer index of the node with a number: the inverse of lahar_grid_find_node.
 ///
-/// `index`: written, shape [3].
+/// `node`: number of the node. `index`: written, shape [3]; in two dimensions index[2] is 0.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
@@ -149,9 +165,9 @@ pub unsafe extern "C" fn lahar_grid_node_index(
 ) -> lahar_status {
     entry("lahar_grid_node_index", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or three writable integers.
-        let (cell, place) =
+        let (cell, target) =
             unsafe { (scope.world(world)?, out(index.cast::<[i64; 3]>(), "index")?) };
-        place.set(cell.query_grid(|w| w.grid_node_index(node).ok_or_else(|| no_node(w, node)))?);
+        target.set(cell.query_grid(|w| w.grid_node_index(node).ok_or_else(|| no_node(w, node)))?);
         Ok(())
     })
 }
@@ -168,6 +184,7 @@ fn no_node(world: &World, node: i64) -> Error {
 
 /// Number of node fields.
 ///
+/// `fields`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
@@ -187,7 +204,8 @@ pub unsafe extern "C" fn lahar_grid_field_count(
 ///
 /// `field`: 0 to lahar_grid_field_count - 1.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index),
+/// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_field_info(
@@ -206,11 +224,12 @@ pub unsafe extern "C" fn lahar_grid_field_info(
 
 /// Copies a node field.
 ///
-/// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and `count` is `active_nodes`
-/// of lahar_grid_statistics.
-/// `values`: written, shape [count, components].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
-/// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT (count), LAHAR_ERROR_BUSY.
+/// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and
+/// `count` is `active_nodes` of lahar_grid_statistics.
+/// `values`: written, shape [count, components], in the unit of the field.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+/// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT
+/// (count), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_read(
@@ -223,7 +242,8 @@ pub unsafe extern "C" fn lahar_grid_read(
     entry("lahar_grid_read", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a text.
         let (cell, field) = unsafe { (scope.world(world)?, text(field, "field")?) };
-        // SAFETY: the host passes NULL or `count` nodes, and NULL or room for the values of so many.
+        // SAFETY: the host passes NULL or `count` nodes, and NULL or room for the values of so
+        // many.
         cell.query_grid(|w| unsafe { read_nodes(w, field, (count, nodes), values) })
     })
 }
@@ -269,12 +289,14 @@ fn node_field(world: &World, field: &str) -> Result<FieldInfo> {
     found.copied().ok_or_else(|| Error::unknown_name("node field", field, names()))
 }
 
-/// Samples a node field at points: sum of w m q over sum of w m, w the shape function and m the mass of a node.
+/// Samples a node field q at points: sum of w m q over the nodes divided by the sum of w m, with
+/// the shape function w and the mass m of a node.
 ///
 /// `count`, `points`: [m], shape [count, dimension].
-/// `values`: written, shape [count, components]; zeros where no material is.
-/// `inside`: written, shape [count]: 1 where material is, else 0; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name),
+/// `values`: written, shape [count, components], in the unit of the field; zeros where there is no
+/// material.
+/// `inside`: written, shape [count]: 1 where there is material, else 0; may be NULL.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
 /// LAHAR_ERROR_INVALID_ARGUMENT (count, a coordinate that is not finite), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
@@ -289,7 +311,8 @@ pub unsafe extern "C" fn lahar_grid_sample(
     entry("lahar_grid_sample", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a text.
         let (cell, field) = unsafe { (scope.world(world)?, text(field, "field")?) };
-        // SAFETY: the host passes NULL or `count` points, and NULL or room for the results of so many.
+        // SAFETY: the host passes NULL or `count` points, and NULL or room for the results of so
+        // many.
         cell.query_grid(|w| unsafe { sample(w, field, (count, points), (values, inside)) })
     })
 }
@@ -302,7 +325,8 @@ unsafe fn sample(
 ) -> Result<()> {
     let components = node_field(world, field)?.components;
     let (n, d) = (count(n, "count")?, world.options().dimension);
-    // SAFETY: by contract of the caller `n` points stand there, and there is room for the results of `n`.
+    // SAFETY: by contract of the caller `n` points stand there, and there is room for the results
+    // of `n`.
     let (points, values, mut inside) = unsafe {
         let points = slice(points, product(n, d, "points")?, "points")?;
         let values = slice_mut(values, product(n, components, "values")?, "values")?;

@@ -1,4 +1,5 @@
-//! Sizes and offsets of the public structs on 64-bit systems: asserted here, and by both headers from this list.
+//! Sizes and offsets of the public structs on 64-bit systems: asserted here, and by both headers
+//! from this list.
 
 /// `name: size { field: offset, ... }`; the header generator reads these lines.
 macro_rules! layout {

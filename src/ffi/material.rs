@@ -1,4 +1,5 @@
-//! Materials: a model with values of its parameters. A material may be used by many bodies and worlds.
+//! Materials: a model with values of its parameters. A material may be used by many bodies and
+//! worlds.
 
 use super::arguments::{count, handle_out, out, reference, slice, text};
 use super::cells::ContextCell;
@@ -10,7 +11,8 @@ use crate::material::Material;
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// A model with values of its parameters. Freed by lahar_material_free; bodies keep what they need.
+/// A model with values of its parameters. Freed by lahar_material_free; existing
+/// bodies do not need it.
 pub struct lahar_material {
     pub(super) material: Arc<Material>,
     pub(super) context: Arc<ContextCell>,
@@ -19,11 +21,13 @@ pub struct lahar_material {
 /// Makes a material from named values. Parameters that are not named have their defaults.
 ///
 /// `model`: name of a model of a loaded plugin.
-/// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of the model's description;
-/// NULL is allowed if `count` is 0.
-/// `material`: set to the new handle, or to NULL on failure; the host frees it with lahar_material_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message tells the closest),
-/// LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS, LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
+/// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of
+/// lahar_parameter_info; NULL is allowed if `count` is 0.
+/// `material`: set to the new handle, or to NULL on failure; the host frees it with
+/// lahar_material_free.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message
+/// names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
+/// LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_material_create(
@@ -36,13 +40,13 @@ pub unsafe extern "C" fn lahar_material_create(
 ) -> lahar_status {
     entry("lahar_material_create", |scope| {
         // SAFETY: the host passes NULL or a writable pointer, a live handle, a text.
-        let (place, cell, model) = unsafe {
+        let (target, cell, model) = unsafe {
             (handle_out(material, "material")?, scope.context(context)?, text(model, "model")?)
         };
         // SAFETY: the host passes `count` names and values.
         let named = unsafe { named_values(count, names, values) }?;
         let material = Material::new(&cell.context, model, &named)?;
-        place.set(Box::into_raw(Box::new(lahar_material { material, context: cell })));
+        target.set(Box::into_raw(Box::new(lahar_material { material, context: cell })));
         Ok(())
     })
 }
@@ -62,21 +66,23 @@ unsafe fn named_values<'a>(
         .collect()
 }
 
-/// Frees the handle; bodies made of the material go on. NULL is ignored.
+/// Frees the handle; bodies of the material remain valid. NULL is ignored.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_material_free(material: *mut lahar_material) {
     quiet_entry(|| {
         if !material.is_null() {
-            // SAFETY: the handle came from Box::into_raw in lahar_material_create and is freed once.
+            // SAFETY: the handle came from Box::into_raw in lahar_material_create and is freed
+            // once.
             drop(unsafe { Box::from_raw(material) });
         }
     });
 }
 
-/// Value of a parameter, given or default, in the unit of its description.
+/// Value of a parameter, given or default.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+/// `value`: gets the value, in the unit of lahar_parameter_info.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_material_value(
@@ -89,8 +95,8 @@ pub unsafe extern "C" fn lahar_material_value(
         let material = unsafe { reference(material, "material") }?;
         scope.attach_context(&material.context);
         // SAFETY: the host passes NULL or a text, and NULL or a writable double.
-        let (parameter, place) = unsafe { (text(parameter, "parameter")?, out(value, "value")?) };
-        place.set(material.material.value(parameter)?);
+        let (parameter, target) = unsafe { (text(parameter, "parameter")?, out(value, "value")?) };
+        target.set(material.material.value(parameter)?);
         Ok(())
     })
 }

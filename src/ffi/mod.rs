@@ -1,8 +1,9 @@
 //! The C API: one file per object, a thin layer over the engine's Rust types.
 //!
 //! `include/lahar/lahar.h` is generated from the files of this folder, in the order listed in
-//! `xtask/src/headers.rs`. A wrapper checks pointers, counts, strides and struct sizes; the engine checks physics.
-//! Every body runs inside [`entry::entry`]; the objects behind the handles are in [`cells`].
+//! `xtask/src/headers.rs`. A wrapper checks pointers, counts, strides and struct sizes; the engine
+//! checks physics. Every body runs inside [`entry::entry`]; the objects behind the handles are in
+//! [`cells`].
 #![allow(non_camel_case_types)] // the names are those of the C header
 #![allow(clippy::missing_safety_doc)] // the conventions at the top of lahar.h are the contract of every function
 
@@ -29,7 +30,7 @@ pub mod view;
 pub mod wall;
 pub mod world;
 
-/// The public structs in one place, for the assertions of `layout`.
+/// All public structs, for the assertions of `layout`.
 mod public {
     pub(super) use super::body::{lahar_array, lahar_fill, lahar_particles};
     pub(super) use super::context::lahar_plugin_info;

@@ -1,4 +1,5 @@
-//! Models: what the loaded plugins offer. Numbers such as `kinematics` are the constants of lahar_plugin.h.
+//! Models: the constitutive models of the loaded plugins. Numbers such as `kinematics` are the
+//! constants of lahar_plugin.h.
 
 use super::arguments::{Grows, index, out, struct_out, text};
 use super::context::lahar_context;
@@ -15,13 +16,13 @@ use std::ffi::c_char;
 pub struct lahar_model_info {
     /// sizeof(lahar_model_info); set by the host.
     pub struct_size: u32,
-    /// What the model takes: one of LAHAR_KINEMATICS_* of lahar_plugin.h.
+    /// Measure of deformation that the model takes: one of LAHAR_KINEMATICS_* of lahar_plugin.h.
     pub kinematics: i32,
     /// Name, for lahar_material_create.
     pub name: *const c_char,
     /// One sentence.
     pub summary: *const c_char,
-    /// Where the model is published.
+    /// Publication of the model.
     pub reference: *const c_char,
     /// Index of the plugin that it comes from.
     pub plugin: i64,
@@ -47,7 +48,8 @@ unsafe impl Grows for lahar_model_info {
 pub struct lahar_parameter_info {
     /// sizeof(lahar_parameter_info); set by the host.
     pub struct_size: u32,
-    /// One of LAHAR_PARAMETER_* of lahar_plugin.h: a real, a whole number, or a choice given by its position 0, 1, ...
+    /// One of LAHAR_PARAMETER_* of lahar_plugin.h: a real, a whole number, or a choice given by its
+    /// position 0, 1, ...
     pub kind: i32,
     /// 1: must be given; 0: `default_value` is used.
     pub required: i32,
@@ -55,7 +57,7 @@ pub struct lahar_parameter_info {
     pub reserved: i32,
     /// Name, for lahar_material_create.
     pub name: *const c_char,
-    /// Symbol of the literature.
+    /// Symbol used in the literature.
     pub symbol: *const c_char,
     /// SI unit.
     pub unit: *const c_char,
@@ -81,7 +83,8 @@ unsafe impl Grows for lahar_parameter_info {
     const FIRST: usize = 96;
 }
 
-/// A state variable of a model; it is a field of every body of such a material, by this name. The texts are static.
+/// A state variable of a model. Bodies of such a material have a particle field with this name. The
+/// texts are static.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_state_info {
@@ -111,6 +114,7 @@ unsafe impl Grows for lahar_state_info {
 
 /// Number of models of all loaded plugins.
 ///
+/// `models`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
@@ -150,7 +154,7 @@ pub unsafe extern "C" fn lahar_context_model_info(
 ///
 /// `name`: NUL-terminated, UTF-8.
 /// `model`: gets the index.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_find_model(
@@ -160,11 +164,11 @@ pub unsafe extern "C" fn lahar_context_find_model(
 ) -> lahar_status {
     entry("lahar_context_find_model", |scope| {
         // SAFETY: the host passes NULL or a live handle, a text and a writable integer.
-        let (cell, name, place) =
+        let (cell, name, target) =
             unsafe { (scope.context(context)?, text(name, "name")?, out(model, "model")?) };
         let found = cell.context.model(name)?;
         let position = cell.context.models().iter().position(|m| std::ptr::eq(*m, found));
-        place.set(position.map_or(-1, |i| i as i64));
+        target.set(position.map_or(-1, |i| i as i64));
         Ok(())
     })
 }
@@ -173,7 +177,8 @@ pub unsafe extern "C" fn lahar_context_find_model(
 ///
 /// `model`: index of the model. `parameter`: 0 to `parameter_count` - 1 of lahar_model_info.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
+/// index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_parameter(
@@ -194,7 +199,8 @@ pub unsafe extern "C" fn lahar_context_model_parameter(
 ///
 /// `model`: index of the model. `state`: 0 to `state_count` - 1 of lahar_model_info.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
+/// index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_state(

@@ -10,7 +10,7 @@ use crate::world::queries::Totals;
 use std::ffi::c_char;
 use std::path::Path;
 
-/// In the place of a body's id: all bodies.
+/// Stands for all bodies where the id of a body is expected.
 pub const LAHAR_ALL_BODIES: i64 = -1;
 
 /// Sums over particles.
@@ -27,15 +27,15 @@ pub struct lahar_totals {
     pub mass: f64,
     /// Momentum [kg m/s], shape [3].
     pub momentum: [f64; 3],
-    /// Angular momentum about the origin of space x = 0 [kg m^2/s], shape [3].
+    /// Angular momentum about the point x = 0 [kg m^2/s], shape [3].
     pub angular_momentum: [f64; 3],
     /// Kinetic energy [J].
     pub kinetic_energy: f64,
-    /// Strain energy [J]: the work of the stresses, or what the model stores if it says so.
+    /// Strain energy [J]: the work of the stresses, or the stored energy if the model gives it.
     pub strain_energy: f64,
-    /// Potential energy - m g . x [J], with the present gravity.
+    /// Potential energy, the sum of - m g . x [J], with gravity g at the present time.
     pub potential_energy: f64,
-    /// Centre of mass [m], shape [3].
+    /// Centre of mass [m], shape [3]; 0 without particles.
     pub center_of_mass: [f64; 3],
 }
 
@@ -49,7 +49,8 @@ unsafe impl Grows for lahar_totals {
 ///
 /// `body`: an id, or LAHAR_ALL_BODIES.
 /// `totals`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND,
+/// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_totals(
@@ -59,9 +60,9 @@ pub unsafe extern "C" fn lahar_world_totals(
 ) -> lahar_status {
     entry("lahar_world_totals", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
-        let (cell, place) = unsafe { (scope.world(world)?, struct_out(totals, "totals")?) };
+        let (cell, target) = unsafe { (scope.world(world)?, struct_out(totals, "totals")?) };
         let totals = cell.query(|w| w.totals((body != LAHAR_ALL_BODIES).then_some(body)))?;
-        place.set(from_totals(&totals));
+        target.set(from_totals(&totals));
         Ok(())
     })
 }
@@ -83,10 +84,10 @@ fn from_totals(totals: &Totals) -> lahar_totals {
 
 /// Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 ///
-/// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written aside and renamed, so that an existing one is
-/// replaced whole or not at all.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or does not end in `.vtp`),
-/// LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+/// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
+/// then renamed, so that an existing file is replaced as a whole or not at all.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or
+/// does not end in `.vtp`), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_write_vtp(

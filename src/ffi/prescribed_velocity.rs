@@ -1,4 +1,5 @@
-//! Velocities prescribed on regions of the grid, constant or by a table over time, named by ids that are never used again.
+//! Velocities prescribed on regions of the grid, constant or by a table over time, named by ids
+//! that are never used again.
 
 use super::arguments::{Grows, initialise, optional_out, out, read_struct};
 use super::cells::{Change, WorldCell};
@@ -24,20 +25,23 @@ const _: () = {
     assert!(LAHAR_COMPONENT_Z == Z);
 };
 
-/// A velocity that the nodes in a box have at the end of every step, whatever pulls at them. Fill it with
-/// lahar_prescribed_velocity_init, then set `components`, the box and what else is wanted.
+/// A velocity that the nodes in a box have at the end of every step, whatever pulls at them. Fill
+/// it with lahar_prescribed_velocity_init, then set `components`, the box, and `velocity` or
+/// `table`.
 ///
-/// The box stays where it is in space and holds nodes, not particles: it prescribes what moves through it. It comes after
-/// the walls, and where boxes overlap the one that was added last counts.
+/// The box is fixed in space and selects nodes, not particles: the velocity is prescribed to
+/// whatever moves through the box. It is applied after the walls. Where boxes overlap, the one that
+/// was added last counts.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_prescribed_velocity {
     /// sizeof(lahar_prescribed_velocity); set by lahar_prescribed_velocity_init.
     pub struct_size: u32,
-    /// The components that are prescribed, a sum of LAHAR_COMPONENT_*; has no default. The others stay free.
+    /// The components that are prescribed, a sum of LAHAR_COMPONENT_*; has no default. The others
+    /// stay free.
     pub components: i32,
-    /// Lower corner of the box [m], shape [3]; may be -infinity; has no default. Nodes on its faces, to 1e-9 of the spacing,
-    /// are inside.
+    /// Lower corner of the box [m], shape [3]; may be -infinity; has no default. Nodes on its
+    /// faces, within 1e-9 spacings, are inside.
     pub box_min: [f64; 3],
     /// Upper corner of the box [m], shape [3]; may be infinity; has no default.
     pub box_max: [f64; 3],
@@ -77,11 +81,13 @@ pub unsafe extern "C" fn lahar_prescribed_velocity_init(
     })
 }
 
-/// Adds a prescribed velocity. The stable time step keeps it, too, below `cfl` spacings a step.
+/// Adds a prescribed velocity. It limits the stable time step: a node moves at most `cfl` spacings
+/// in a step.
 ///
 /// `condition`: copied, with its table. `id`: gets the id; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (components; a box that is not
-/// set or inverted; a velocity that is not finite; a row of the table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT
+/// (components; a box that is not set or inverted; a velocity that is not finite; a row of the
+/// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_prescribed_velocity_add(
@@ -119,7 +125,8 @@ unsafe fn to_condition(
 
 /// Removes a prescribed velocity. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_prescribed_velocity_remove(
@@ -133,7 +140,8 @@ pub unsafe extern "C" fn lahar_prescribed_velocity_remove(
     })
 }
 
-/// Force of a prescribed velocity on the material in the last step: the momentum it gave over the time step.
+/// Force of a prescribed velocity on the material in the last step: the momentum that it added,
+/// divided by the time step; 0 before the first step with it.
 ///
 /// `force`: written [N], shape [3].
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.

@@ -1,5 +1,5 @@
-//! Statics by dynamics: gravity by a table, how far a world is from equilibrium, steps until it is reached, initial
-//! stresses.
+//! Statics by dynamics: gravity by a table, the distance of a world from equilibrium, steps until
+//! equilibrium is reached, initial stresses.
 
 use super::arguments::{Grows, initialise, read_struct, struct_out};
 use super::cells::Change;
@@ -11,18 +11,22 @@ use crate::error::Error;
 use crate::world::World;
 use crate::world::statics::{Criteria, Equilibrium, STEPS_BETWEEN_CHECKS, Settled};
 
-/// Steps between two looks at the equilibrium in lahar_world_settle.
+/// Steps between two checks of the equilibrium in lahar_world_settle.
 pub const LAHAR_STEPS_BETWEEN_CHECKS: i64 = 50;
 
 const _: () = assert!(LAHAR_STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS);
 
-/// Sets gravity by a table over time, piecewise linear, from the next step on: a ramp, a shaking. A step takes it at its
-/// middle, and stable_dt counts with the largest that can come in it. lahar_world_set_gravity brings constant gravity back.
+/// Sets gravity by a table over time, piecewise linear, from the next step on: for a ramp or an
+/// earthquake. A step uses the value at the middle of the step; lahar_world_stable_dt uses the
+/// largest value that may occur in the step. lahar_world_set_gravity replaces the table by constant
+/// gravity.
 ///
-/// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2], shape [count, 3].
-/// Before the first row and after the last one the values of that row hold.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not increase, a value that is not
-/// finite; the text names the row), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2],
+/// shape [count, 3]. The first row also holds before its time, the last row also after its time. In
+/// two dimensions values[3 * row + 2] is ignored.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not
+/// increase, a value that is not finite; the message names the row), LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_set_gravity_table(
@@ -53,19 +57,22 @@ pub struct lahar_equilibrium {
     pub reserved: i32,
     /// Sum of m v^2 / 2 of the particles [J].
     pub kinetic_energy: f64,
-    /// Strain energy of the particles [J], as in lahar_totals: what the stresses worked since the start.
+    /// Strain energy of the particles [J], as in lahar_totals.
     pub strain_energy: f64,
-    /// Kinetic energy over the energy of the stresses [-]: the larger of |strain_energy| and the sum of
-    /// V s:s / (2 rho c^2), with the stress s and the largest wave speed c, which knows of initial stresses too. 0 at
-    /// rest.
+    /// kinetic_energy divided by the energy of the stresses [-]. The latter is the larger of
+    /// |strain_energy| and the sum of V s:s / (2 rho c^2) over the particles, with the volume V, the
+    /// stress s, the density rho and the largest wave speed c; the sum includes initial stresses. 0
+    /// at rest.
     pub kinetic_ratio: f64,
-    /// Sum over the nodes of |F| [N], with the force F of stresses, tractions and gravity that neither walls nor prescribed
-    /// velocities take up. Damping is no part of it: it vanishes in equilibrium.
+    /// Sum of |F| over the nodes [N]: F is the force of stresses, tractions and gravity that
+    /// neither walls nor prescribed velocities take up. Damping is not included: it is 0 in
+    /// equilibrium.
     pub unbalanced_force: f64,
-    /// What loads the world [N]: the sum over the nodes of m |g|, the forces of the tractions, and the sum over the
-    /// nodes of the reactions of prescribed velocities. If all these are 0, the sum of the reactions of walls.
+    /// Load on the world [N]: the sum over the nodes of m |g|, plus the forces of the tractions,
+    /// plus the sum over the nodes of the reactions of prescribed velocities. If all these are 0,
+    /// the sum of the reactions of walls.
     pub external_force: f64,
-    /// unbalanced_force over external_force [-]. 0 if nothing is unbalanced.
+    /// unbalanced_force divided by external_force [-]; 0 if unbalanced_force is 0.
     pub unbalanced_ratio: f64,
 }
 
@@ -88,13 +95,18 @@ fn from_equilibrium(e: &Equilibrium) -> lahar_equilibrium {
     }
 }
 
-/// Tells how far a world is from equilibrium, by the forces of the last step; before the first step, and after an initial
-/// stress was set, by those of the particles as they are. Costs about as much as a part of a step.
+/// Reports how far a world is from equilibrium. The forces are those on the grid, which shows the
+/// particles and loads as they are: of the last step, or, if particle fields, tractions or bodies
+/// were changed since, mapped anew. Particles may be reordered by that, so that read views opened
+/// before become stale (LAHAR_ERROR_VIEW_STALE). What is written through a view counts once all
+/// write views of the world are freed. Costs less than a step.
 ///
 /// `equilibrium`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a model has no wave speed for the
-/// present state), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN (an open write view while particles
-/// have to be sorted), LAHAR_ERROR_BUSY.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
+/// model has no wave speed for the present state), LAHAR_ERROR_BUSY. If the grid has to be mapped,
+/// also LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
+/// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step), and LAHAR_ERROR_BUSY
+/// also while another thread runs a query.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_equilibrium(
@@ -103,14 +115,14 @@ pub unsafe extern "C" fn lahar_world_equilibrium(
 ) -> lahar_status {
     entry("lahar_world_equilibrium", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable struct.
-        let (cell, place) =
+        let (cell, target) =
             unsafe { (scope.world(world)?, struct_out(equilibrium, "equilibrium")?) };
-        place.set(from_equilibrium(&cell.query_grid(World::equilibrium_of_grid)?));
+        target.set(from_equilibrium(&cell.query_grid(World::equilibrium_of_grid)?));
         Ok(())
     })
 }
 
-/// When a world counts as settled. Fill it with lahar_settle_criteria_init.
+/// Criteria for a world to be settled. Fill it with lahar_settle_criteria_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_settle_criteria {
@@ -124,7 +136,8 @@ pub struct lahar_settle_criteria {
     pub unbalanced_ratio: f64,
     /// Most steps, >= 1; default 1000000.
     pub max_steps: i64,
-    /// Time of the world at which to give up [s], after the present one; default infinity.
+    /// Time of the world at which to stop without equilibrium [s], later than now; default
+    /// infinity.
     pub until: f64,
 }
 
@@ -165,15 +178,15 @@ pub unsafe extern "C" fn lahar_settle_criteria_init(
 pub struct lahar_settle_result {
     /// sizeof(lahar_settle_result); set by the host.
     pub struct_size: u32,
-    /// 1: both criteria hold; 0: steps or time ran out before.
+    /// 1: both criteria are met; 0: `max_steps` or `until` was reached before.
     pub converged: i32,
     /// Number of committed steps.
     pub steps: i64,
     /// Time that was reached [s].
     pub time: f64,
-    /// `kinetic_ratio` of lahar_equilibrium at the last look [-].
+    /// `kinetic_ratio` of lahar_equilibrium at the last check [-].
     pub kinetic_ratio: f64,
-    /// `unbalanced_ratio` of lahar_equilibrium at the last look [-].
+    /// `unbalanced_ratio` of lahar_equilibrium at the last check [-].
     pub unbalanced_ratio: f64,
 }
 
@@ -183,13 +196,17 @@ unsafe impl Grows for lahar_settle_result {
     const FIRST: usize = 40;
 }
 
-/// Steps of the stable length until the world is in equilibrium, or until steps or time have run out, which is no error:
-/// `converged` tells. It looks every LAHAR_STEPS_BETWEEN_CHECKS steps, and does not stop before the last row of every table in
-/// use has passed. Set lahar_world_set_damping before, for instance to 0.3 to 0.7, or nothing comes to rest.
+/// Makes steps of the stable length until the world is in equilibrium, or until `max_steps` or
+/// `until` is reached. The latter is no error: `converged` is then 0. Equilibrium is checked every
+/// LAHAR_STEPS_BETWEEN_CHECKS steps, and not accepted before the time of the last row of every
+/// table in use. Set damping with lahar_world_set_damping before, for instance 0.3 to 0.7: without
+/// damping the world does not come to rest.
 ///
-/// `criteria`: copied; NULL: the defaults. `result`: written, on failure too; the host has set `struct_size`; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not positive, and if the stable step
-/// is infinite and `until` too. A positive status means that no partial step was committed.
+/// `criteria`: copied; NULL: the defaults.
+/// `result`: written, also if a step fails; the host has set `struct_size`; may be NULL.
+/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not
+/// positive, and if both the stable step and `until` are infinite. A positive status means that no
+/// partial step was committed.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_settle(
@@ -206,7 +223,7 @@ pub unsafe extern "C" fn lahar_world_settle(
             // SAFETY: the host passes a filled struct.
             to_criteria(&unsafe { read_struct(criteria, "criteria") }?)?
         };
-        let place = if result.is_null() {
+        let target = if result.is_null() {
             None
         } else {
             // SAFETY: the host passes a writable struct.
@@ -218,8 +235,8 @@ pub unsafe extern "C" fn lahar_world_settle(
             (settled, answer) = w.settle(&criteria);
             (settled.steps, w.time(), answer)
         })?;
-        place.inspect(|place| {
-            place.set(lahar_settle_result {
+        target.inspect(|target| {
+            target.set(lahar_settle_result {
                 struct_size: 0,
                 converged: i32::from(settled.converged),
                 steps,
@@ -246,19 +263,22 @@ fn to_criteria(given: &lahar_settle_criteria) -> Result<Criteria, Error> {
     })
 }
 
-/// Gives the particles of a body the stress of level ground at rest: at the depth z below the surface the stress along
-/// gravity is -unit_weight z, along the other two axes k0 times that; shear is 0, and so is all stress above the surface.
-/// The model derives its state from the stress, as when a body is added, so that what it remembered is lost.
+/// Sets the stresses of a body to those of level ground at rest: at the depth z below the surface
+/// the stress along gravity is -unit_weight z, and along the other two axes k0 times that. Shear
+/// stresses are 0, and above the surface all stresses are 0. The model derives its state variables
+/// from the stress, as when a body is added; their old values are lost.
 ///
-/// A field of the host's own: give `stress` in lahar_particles, or write the field "stress" and call
-/// lahar_body_init_state.
+/// To set other initial stresses, give `stress` in lahar_particles, or write the field "stress" and
+/// call lahar_body_init_state.
 ///
 /// `surface_level`: coordinate of the surface along the axis of gravity [m].
-/// `unit_weight`: [N/m^3], > 0; or 0: mass over volume of the whole body, times gravity at the present time.
+/// `unit_weight`: [N/m^3], > 0; or 0: mass divided by volume of the whole body, times gravity at
+/// the present time.
 /// `k0`: ratio of horizontal to vertical stress [-], >= 0.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity is 0 at the present time or
-/// not along an axis; a value out of its range; the model refuses the stress), LAHAR_ERROR_UNSUPPORTED (the stress of the
-/// model follows from the deformation gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
+/// is 0 at the present time or not along an axis; a value out of its range; the model refuses the
+/// stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
+/// gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_set_k0_stress(
@@ -276,12 +296,12 @@ pub unsafe extern "C" fn lahar_body_set_k0_stress(
     })
 }
 
-/// Lets the model of a body derive its state variables anew from the present stresses, as when the body was added: for
-/// instance the volume ratio of a fluid from its pressure. What it remembered is lost. To be called after the host wrote
-/// the field "stress".
+/// Makes the model of a body derive its state variables anew from the present stresses, as when the
+/// body was added: for instance the volume ratio of a fluid from its pressure. The old values of
+/// the state variables are lost. Call it after writing the field "stress".
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the model refuses the stress; the old
-/// state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
+/// model refuses the stress; the old state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_init_state(world: *mut lahar_world, body: i64) -> lahar_status {

@@ -1,11 +1,11 @@
-//! Tables of the host: values over time, piecewise linear between the rows. Before the first row and after the last one the
-//! values of that row hold.
+//! Tables of the host: values over time, piecewise linear between the rows. The first row also
+//! holds before its time, the last row also after its time.
 
 use super::arguments::{count, product, slice};
 use crate::boundary::Table;
 use crate::error::Result;
 
-/// A table over time. Times must increase, and all numbers be finite.
+/// A table over time. Times must increase, and all numbers must be finite.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_table {
@@ -13,7 +13,7 @@ pub struct lahar_table {
     pub count: i64,
     /// Times [s], shape [count]. Read during the call only.
     pub times: *const f64,
-    /// Values, shape as said where the table is used. Read during the call only.
+    /// Values; unit and shape are given where the table is used. Read during the call only.
     pub values: *const f64,
 }
 
@@ -32,7 +32,8 @@ pub(super) unsafe fn to_table(
     if n == 0 {
         return Ok(None);
     }
-    // SAFETY: by contract of the caller the pointers are NULL or hold as many values as the count says.
+    // SAFETY: by contract of the caller the pointers are NULL or hold as many values as the count
+    // says.
     let (times, values) = unsafe {
         (
             slice(table.times, n, "times")?,

@@ -1,4 +1,5 @@
-//! Tractions on the surfaces of bodies, constant or by a table over time, named by ids that are never used again.
+//! Tractions on the surfaces of bodies, constant or by a table over time, named by ids that are
+//! never used again.
 
 use super::arguments::{Grows, initialise, optional_out, out, read_struct};
 use super::cells::{Change, WorldCell};
@@ -9,14 +10,17 @@ use super::world::lahar_world;
 use crate::boundary::{BoxRegion, Table, Traction};
 use crate::error::{Error, Result};
 
-/// A traction on a plane surface of a body. Fill it with lahar_traction_init, then set `body`, the normal, the box and the
-/// traction.
+/// A traction on a plane surface of a body. Fill it with lahar_traction_init, then set `body`, the
+/// normal, the box and the traction.
 ///
-/// It is a dead load: force per area of the surface as it was when the body was added, in a fixed direction. The particles
-/// with their centres in the box carry it, from now on and wherever they go; the box must hold the outermost layer of
-/// particles alone, the one half an edge of a particle inside of the surface. Each gives its share to the grid not at its
-/// centre but at its outer face, so that the stress is right up to the last cell. In two dimensions the surface is 1 m
-/// wide, or with axial symmetry a radian. The body needs the edge lengths of its particles: those added as a shape have them, arrays give them in `size`.
+/// It is a dead load: a force per area of the surface as it was when the body was added, in a fixed
+/// direction. The particles whose centres are in the box when the traction is added carry it from
+/// then on, wherever they move. The box must contain only the outermost layer of particles, whose
+/// centres are half a particle's edge below the surface. Each particle passes its share to the grid
+/// at its outer face and not at its centre, so that the stress is right up to the last cell. In two
+/// dimensions the surface is 1 m wide, or one radian with axial symmetry. The edge lengths of the
+/// particles must be known: of a body that was added as a shape they are, for arrays give them in
+/// `size` of lahar_particles.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_traction {
@@ -34,10 +38,11 @@ pub struct lahar_traction {
     pub box_min: [f64; 3],
     /// Upper corner of the box [m], shape [3]; may be infinity; has no default.
     pub box_max: [f64; 3],
-    /// The traction vector [Pa], shape [3], finite; default 0. A pressure p on a surface whose normal points to larger y
-    /// is (0, -p, 0).
+    /// The traction vector [Pa], shape [3], finite; default 0. A pressure p on a surface whose
+    /// normal points to larger y is (0, -p, 0).
     pub traction: [f64; 3],
-    /// Factors of the traction over time: values [-], shape [count]. Default: no table, the factor is 1.
+    /// Factors of the traction over time: values [-], shape [count]. Default: no table, the factor
+    /// is 1.
     pub factors: lahar_table,
 }
 
@@ -74,13 +79,14 @@ pub unsafe extern "C" fn lahar_traction_init(
     })
 }
 
-/// Adds a traction. It goes when its body is removed.
+/// Adds a traction. It is removed together with its body.
 ///
 /// `traction`: copied, with its table. `id`: gets the id; may be NULL.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
-/// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle, or with particles behind
-/// one another along the normal; particles whose edge lengths are not known; a traction that is not finite; a row of the
-/// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle,
+/// or with particles behind one another along the normal; particles whose edge lengths are not
+/// known; a traction that is not finite; a row of the table), LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_traction_add(
@@ -124,7 +130,8 @@ unsafe fn to_traction(cell: &WorldCell, given: &lahar_traction) -> Result<Tracti
 
 /// Removes a traction. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_traction_remove(world: *mut lahar_world, id: i64) -> lahar_status {
@@ -135,12 +142,12 @@ pub unsafe extern "C" fn lahar_traction_remove(world: *mut lahar_world, id: i64)
     })
 }
 
-/// What a traction loads.
+/// What a traction loads, and with which force.
 ///
 /// `particles`: gets the number of particles that carry it; may be NULL.
-/// `area`: gets their area [m^2]; may be NULL.
-/// `force`: written, the force on the body in the last step, or of a query that mapped it to the grid since [N],
-/// shape [3]; 0 before.
+/// `area`: gets the area of the loaded surface [m^2]; may be NULL.
+/// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first step
+/// with the traction. Queries of the grid do not change it.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
@@ -154,7 +161,8 @@ pub unsafe extern "C" fn lahar_traction_force(
     force: *mut f64,
 ) -> lahar_status {
     entry("lahar_traction_force", |scope| {
-        // SAFETY: the host passes NULL or a live handle, NULL or writable numbers, NULL or three writable doubles.
+        // SAFETY: the host passes NULL or a live handle, NULL or writable numbers, NULL or three
+        // writable doubles.
         let (cell, particles, area, force) = unsafe {
             (
                 scope.world(world)?,

@@ -10,7 +10,8 @@ pub const LAHAR_VERSION_MAJOR: i32 = 0;
 pub const LAHAR_VERSION_MINOR: i32 = 1;
 /// Patch version of this header.
 pub const LAHAR_VERSION_PATCH: i32 = 0;
-/// Number of the binary interface of this header. A library is usable if `lahar_abi_version()` answers the same.
+/// Number of the binary interface of this header. A library is usable if `lahar_abi_version()`
+/// returns the same number.
 pub const LAHAR_ABI_VERSION: i32 = 1;
 
 // The package's version is the one that counts.
@@ -45,7 +46,8 @@ pub unsafe extern "C" fn lahar_version(
     })
 }
 
-/// Number of the binary interface of the library that is running; compare with LAHAR_ABI_VERSION. Cannot fail.
+/// Number of the binary interface of the library that is running; compare with LAHAR_ABI_VERSION.
+/// Cannot fail.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub extern "C" fn lahar_abi_version() -> i32 {

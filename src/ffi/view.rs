@@ -1,4 +1,5 @@
-//! Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host frees each view.
+//! Views: the memory of a particle field itself, in storage order (see lahar_body_ids). The host
+//! frees each view.
 
 use super::arguments::{Grows, handle_out, reference, struct_out, text};
 use super::cells::{Change, OpenView, WorldCell};
@@ -9,12 +10,13 @@ use crate::error::{Error, Result, Status};
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// Access of a view: read. A step makes the view stale.
+/// Access of a view: read. The view becomes stale when particles may have been reordered: by a
+/// step, or by a query that maps the grid anew.
 pub const LAHAR_ACCESS_READ: i32 = 0;
 /// Access of a view: read and write. No step is possible while it is open.
 pub const LAHAR_ACCESS_WRITE: i32 = 1;
 
-/// A view of a field. Freed by lahar_view_free; keeps the world alive.
+/// A view of a field. Freed by lahar_view_free; the world lives at least as long.
 pub struct lahar_view {
     open: OpenView,
     data: *mut f64,
@@ -24,7 +26,7 @@ pub struct lahar_view {
     generation: i64,
 }
 
-/// Where the data of a view stand.
+/// The data of a view.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_view_info {
@@ -32,8 +34,9 @@ pub struct lahar_view_info {
     pub struct_size: u32,
     /// Number of components per particle.
     pub components: i32,
-    /// Component c of particle k, in storage order, stands at data[c * stride + k]. Not to be written through a view with
-    /// LAHAR_ACCESS_READ. The memory stays mapped until the view is freed.
+    /// Component c of particle k, in storage order, is data[c * stride + k], in the unit of the
+    /// field (lahar_field_info). Must not be written through a view with LAHAR_ACCESS_READ. The
+    /// memory stays valid until the view is freed.
     pub data: *mut f64,
     /// Number of particles.
     pub count: i64,
@@ -51,13 +54,19 @@ unsafe impl Grows for lahar_view_info {
 
 /// Opens a view of a field of a body.
 ///
-/// While any view is open, bodies cannot be added or removed; while a write view is open, the world cannot step. What is
-/// written through a view is checked before the next step.
+/// While any view is open, bodies cannot be added or removed; while a write view is open, the world
+/// cannot step, and a query of the grid is refused if it would have to map the grid anew. What is
+/// written through a view counts once all write views of the world are freed; it is checked before
+/// the next step. If bodies were added or removed since the last step, opening a view first maps
+/// the particles to the grid; they may be reordered by that.
+///
 /// `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
 /// `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND (body),
-/// LAHAR_ERROR_UNKNOWN_NAME (the message tells the closest name), LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED (write access).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND
+/// (body), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_READ_ONLY,
+/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED (write access); if the particles have to be mapped also
+/// LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
+/// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step).
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_view(
@@ -69,9 +78,9 @@ pub unsafe extern "C" fn lahar_body_view(
 ) -> lahar_status {
     entry("lahar_body_view", |scope| {
         // SAFETY: the host passes NULL or a writable pointer, a live handle, a text.
-        let (place, cell, field) =
+        let (target, cell, field) =
             unsafe { (handle_out(view, "view")?, scope.world(world)?, text(field, "field")?) };
-        place.set(Box::into_raw(Box::new(open(&cell, body, field, access)?)));
+        target.set(Box::into_raw(Box::new(open(&cell, body, field, access)?)));
         Ok(())
     })
 }
@@ -113,10 +122,11 @@ fn open_write(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_vie
     })
 }
 
-/// Where the data stand.
+/// Address and layout of the data of a view.
 ///
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (a step has been made since),
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (of a read
+/// view: particles may have been reordered since it was opened),
 /// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
@@ -137,7 +147,7 @@ pub unsafe extern "C" fn lahar_view_data(
 
 fn view_info(view: &lahar_view) -> Result<lahar_view_info> {
     if !view.open.is_write() && view.generation != view.open.cell.generation() {
-        let text = "the world has stepped since the view was opened; free it and open a new one";
+        let text = "particles may have been reordered since the view was opened; free it and open a new one";
         return Err(Error::new(Status::ViewStale, text));
     }
     Ok(lahar_view_info {
@@ -150,7 +160,7 @@ fn view_info(view: &lahar_view) -> Result<lahar_view_info> {
     })
 }
 
-/// Closes the view. Its memory must not be used any more. NULL is ignored.
+/// Closes the view and frees the handle. Its data must not be used any more. NULL is ignored.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_view_free(view: *mut lahar_view) {

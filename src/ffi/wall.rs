@@ -8,13 +8,14 @@ use super::world::lahar_world;
 use crate::boundary::{Wall, WallKind};
 use crate::error::{Error, Result};
 
-/// A plane wall. Fill it with lahar_wall_init, then set what is wanted.
+/// A plane wall. Fill it with lahar_wall_init, then set what differs from the defaults.
 ///
-/// A wall acts on every node whose signed distance to the plane, positive on the side of the material, is at most `reach`:
-/// 0 for linear and h/2 for quadratic shapes, with the spacing h; so it also acts on all nodes behind it, the whole
-/// half-space. Place walls on node planes for linear shapes, and half a cell from node planes for quadratic ones (for
-/// instance by an `origin` of h/2): then the function of no free node reaches behind the wall. Elsewhere the wall acts up
-/// to h late. Walls apply in the order in which they were added.
+/// A wall acts on every node whose signed distance from the plane, positive on the side of the
+/// material, is at most 0 for linear shapes and h/2 for quadratic ones, with the spacing h. So it
+/// also acts on all nodes behind it, the whole half-space. Put walls on node planes for linear
+/// shapes, and half a cell from node planes for quadratic ones (for instance by an `origin` of
+/// h/2): then the shape function of no free node reaches behind the wall. At other positions the
+/// wall acts too late, by a distance of up to h. Walls act in the order in which they were added.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_wall {
@@ -62,8 +63,9 @@ pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> la
 /// Adds a wall.
 ///
 /// `wall`: copied. `id`: gets the id of the wall; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_UNSUPPORTED
-/// (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+/// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side),
+/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_wall_add(
@@ -91,7 +93,8 @@ fn to_wall(wall: &lahar_wall) -> Result<Wall> {
 
 /// Removes a wall. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_wall_remove(world: *mut lahar_world, id: i64) -> lahar_status {
@@ -102,7 +105,7 @@ pub unsafe extern "C" fn lahar_wall_remove(world: *mut lahar_world, id: i64) -> 
     })
 }
 
-/// Force of a wall on the material in the last step.
+/// Force of a wall on the material in the last step; 0 before the first step with the wall.
 ///
 /// `force`: written [N], shape [3].
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.

@@ -1,7 +1,8 @@
 //! Worlds: a background grid with its bodies and walls, and time.
 //!
-//! Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a result. Any consistent
-//! units may be used; those named are SI. In two dimensions a world is plane strain and 1 m thick.
+//! Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a
+//! result. Any consistent units may be used; those named are SI. In two dimensions a world is plane
+//! strain and 1 m thick.
 
 use super::arguments::{Grows, array3, handle_out, initialise, optional_out, out, read_struct};
 use super::cells::{Change, Steps, WorldCell};
@@ -17,12 +18,14 @@ use crate::transfer::TransferKind;
 use crate::world::World;
 use std::sync::Arc;
 
-/// A background grid with its bodies and walls. Freed by lahar_world_free; views keep it alive.
+/// A background grid with its bodies and walls. Freed by lahar_world_free; it lives as
+/// long as one of its views.
 pub struct lahar_world {
     pub(super) cell: Arc<WorldCell>,
 }
 
-/// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what else is wanted.
+/// What a world is made from. Fill it with lahar_world_options_init, then set `spacing` and what
+/// differs from the defaults.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_world_options {
@@ -38,12 +41,13 @@ pub struct lahar_world_options {
     pub order: i32,
     /// One of LAHAR_GRID_*.
     pub grid_policy: i32,
-    /// Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings from `origin` or from
-    /// x = 0 are refused.
+    /// Distance of the grid's nodes [m], > 0; has no default. Positions further than 1e8 spacings
+    /// from `origin` or from x = 0 are refused.
     pub spacing: f64,
     /// Position of the node with index (0, 0, 0) [m], shape [3]; default 0.
     pub origin: [f64; 3],
-    /// Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default), infinity is PIC.
+    /// Rate at which PIC replaces FLIP in LAHAR_TRANSFER_PIC_FLIP [1/s], >= 0: 0 is FLIP (default),
+    /// infinity is PIC.
     pub pic_rate: f64,
     /// Courant number of the stable time step [-], in (0, 1]; default 0.4.
     pub cfl: f64,
@@ -57,19 +61,22 @@ pub struct lahar_world_options {
     pub box_max: [f64; 3],
     /// One of LAHAR_WALLS_*.
     pub wall_treatment: i32,
-    /// 1: rotational symmetry about the y axis, in 2D: x is the radius, and volumes, masses and forces are per radian; default 0.
-    /// Gravity must act along y. Hold the axis with a slip wall at x = 0: a step of particles that crossed it is refused.
+    /// 1: axial symmetry about the y axis, in two dimensions only: x is the radius, and volumes,
+    /// masses and forces are per radian; default 0. Gravity must act along y. The axis needs a slip
+    /// wall at x = 0: if a particle crosses the axis, the next step is refused.
     pub axisymmetric: i32,
-    /// Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20; each costs a gather and a scatter more.
-    /// 0: the default, 2.
+    /// Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20, or 0
+    /// for the default, 2. Each term costs one more transfer to the grid and back.
     pub filter_order: i32,
     /// 1: particles carry a field `body_force` [N/kg], added to gravity; default 0.
     pub body_force: i32,
-    /// How often a step is repeated smaller when a material fails or asks for a smaller one, 0 (default) to 20. Then such a step changes
-    /// nothing: it is answered by LAHAR_ERROR_SMALLER_STEP if the host gave its length, or if the repetitions did not help. It
-    /// costs a copy of the particles, in memory and once in each step. With 0 a failure poisons the world, and a wish shortens the next step.
+    /// How often a step is repeated with a smaller length when a material fails or asks for a
+    /// smaller step, 0 (default) to 20. If the host gave the length of the step, or if the
+    /// repetitions do not help, nothing is changed and LAHAR_ERROR_SMALLER_STEP is returned. Above
+    /// 0 the particles are copied in each step, which costs time and memory. With 0 a failure
+    /// poisons the world, and a material that asks for a smaller step shortens the next one.
     pub retries: i32,
-    /// 0.
+    /// Must be 0.
     pub reserved: i32,
 }
 
@@ -160,8 +167,9 @@ fn flag(value: i32, name: &str) -> Result<bool> {
 ///
 /// `options`: copied.
 /// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_OUT_OF_MEMORY (a
-/// static grid), LAHAR_ERROR_UNSUPPORTED (options that do not go together; the text names the nearest that do).
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
+/// LAHAR_ERROR_OUT_OF_MEMORY (a static grid), LAHAR_ERROR_UNSUPPORTED (options that cannot be
+/// combined; the message names the nearest ones that can).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_create(
@@ -171,16 +179,16 @@ pub unsafe extern "C" fn lahar_world_create(
 ) -> lahar_status {
     entry("lahar_world_create", |scope| {
         // SAFETY: the host passes NULL or a writable pointer, a live handle, a filled struct.
-        let (place, context, options) = unsafe {
+        let (target, context, options) = unsafe {
             (handle_out(world, "world")?, scope.context(context)?, read_struct(options, "options")?)
         };
         let world = World::new(&context.context, &to_options(&options)?)?;
-        place.set(Box::into_raw(Box::new(lahar_world { cell: WorldCell::new(context, world) })));
+        target.set(Box::into_raw(Box::new(lahar_world { cell: WorldCell::new(context, world) })));
         Ok(())
     })
 }
 
-/// Frees the handle. The memory goes when the last view is freed too. NULL is ignored.
+/// Frees the handle. The memory is freed together with the last view. NULL is ignored.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_free(world: *mut lahar_world) {
@@ -192,10 +200,12 @@ pub unsafe extern "C" fn lahar_world_free(world: *mut lahar_world) {
     });
 }
 
-/// Sets constant gravity from the next step on, in the place of a table (lahar_world_set_gravity_table) too.
+/// Sets constant gravity from the next step on. It also replaces gravity by a table, see
+/// lahar_world_set_gravity_table.
 ///
 /// `gravity`: [m/s^2], shape [3], finite.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 ///
 /// cbindgen:ptrs-as-arrays=[[gravity; 3]]
@@ -214,7 +224,8 @@ pub unsafe extern "C" fn lahar_world_set_gravity(
 /// Sets the local non-viscous damping from the next step on.
 ///
 /// `damping`: [-], in [0, 1).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_set_damping(
@@ -231,16 +242,20 @@ pub unsafe extern "C" fn lahar_world_set_damping(
 /// One step of the given length.
 ///
 /// `dt`: [s], > 0 and not above lahar_world_stable_dt.
-/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, or one so small that time + dt is
-/// time again), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
-/// LAHAR_ERROR_NON_FINITE_INPUT (a value that the host wrote), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of
-/// a static grid or too far away; the world cannot step until the host writes positions back or removes the body),
-/// LAHAR_ERROR_THREADS (the process was forked after the threads had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
-/// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material
-/// failed or asks for a smaller step, the length of which is in `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view), LAHAR_ERROR_BUSY,
+/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, also if it is
+/// so small that time + dt equals time), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in
+/// `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an
+/// invalid value), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too
+/// far away, or beyond the axis of symmetry; the world cannot step until the host writes other
+/// positions or removes the body), LAHAR_ERROR_THREADS (the process was forked after the threads of
+/// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
+/// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only
+/// with the option `retries`: a material failed or asks for a smaller step; its length is in
+/// `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY,
 /// LAHAR_ERROR_POISONED.
-/// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE (both not with `retries`, unless a model fails as a whole),
-/// LAHAR_ERROR_PLUGIN_BROKEN, LAHAR_ERROR_PANIC; lahar_last_error_info tells the body, the particle, the step and the time.
+/// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE
+/// (with `retries` neither, unless a model fails as a whole), LAHAR_ERROR_PLUGIN_BROKEN,
+/// LAHAR_ERROR_PANIC; lahar_last_error_info gives the body, the particle, the step and the time.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> lahar_status {
@@ -255,8 +270,8 @@ pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> l
 /// One step of the stable length.
 ///
 /// `dt`: gets the length of the step [s]; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite, or so small that
-/// time + dt is time again.
+/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite,
+/// or so small that time + dt equals time.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step_auto(
@@ -272,15 +287,17 @@ pub unsafe extern "C" fn lahar_world_step_auto(
     })
 }
 
-/// Steps of the stable length until a time is reached; the last two are shortened to hit it exactly.
+/// Makes steps of the stable length until a time is reached; the last two are shortened to reach it
+/// exactly.
 ///
 /// `until`: time to reach [s], not before the present one.
-/// `max_steps`: at most so many steps, >= 0; INT64_MAX for no limit. Stopping early for this reason is no error.
-/// `steps_done`: gets the number of committed steps, on failure too; may be NULL.
-/// `time`: gets the time that was reached [s], on failure too; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or past, if `max_steps` is
-/// negative, or if the stable step becomes so small that time + dt is time again. A positive status means that no partial
-/// step was committed.
+/// `max_steps`: largest number of steps, >= 0; INT64_MAX for no limit. To stop early for this
+/// reason is no error.
+/// `steps_done`: gets the number of committed steps, also if a step fails; may be NULL.
+/// `time`: gets the time that was reached [s], also if a step fails; may be NULL.
+/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or in
+/// the past, if `max_steps` is negative, or if the stable step becomes so small that time + dt
+/// equals time. A positive status means that no partial step was committed.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_advance(
@@ -313,13 +330,15 @@ fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
     })
 }
 
-/// Longest step that is stable now [s]: infinity without particles.
+/// Longest step that is stable now.
 ///
-/// It is the largest dt, over all particles, with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not
-/// above what the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h the spacing, D the
-/// dimension, nu the kinematic viscosity. Gravity by a table counts with its largest value in the step, and a prescribed
-/// velocity V with |V| dt <= cfl h.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed).
+/// `dt`: gets the length [s]; infinity without particles. It is the largest dt, over all particles,
+/// with (c + |v| + |g| dt) dt <= cfl h and dt <= cfl h^2 / (2 D nu), and not longer than the step
+/// that the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h
+/// the spacing, D the dimension, nu the kinematic viscosity. Of gravity by a table the largest
+/// value in the step is used. A prescribed velocity V adds the condition |V| dt <= cfl h.
+/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material
+/// gives no wave speed).
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_stable_dt(
@@ -334,8 +353,9 @@ pub unsafe extern "C" fn lahar_world_stable_dt(
     })
 }
 
-/// Time of the world [s].
+/// Time of the world.
 ///
+/// `time`: gets the time [s].
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
@@ -353,6 +373,7 @@ pub unsafe extern "C" fn lahar_world_time(
 
 /// Number of committed steps.
 ///
+/// `steps`: gets the number.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
@@ -368,8 +389,9 @@ pub unsafe extern "C" fn lahar_world_step_count(
     })
 }
 
-/// Length of the last committed step [s]; 0 before the first.
+/// Length of the last committed step.
 ///
+/// `dt`: gets the length [s]; 0 before the first step.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]

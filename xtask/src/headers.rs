@@ -1,9 +1,10 @@
-//! The C headers, generated: `include/lahar/lahar.h` from `src/ffi`, `include/lahar/lahar_plugin.h` from `plugins/abi`.
+//! The C headers, generated: `include/lahar/lahar.h` from `src/ffi`, `include/lahar/lahar_plugin.h`
+//! from `plugins/abi`.
 //!
-//! cbindgen translates one Rust file at a time, so that the header has the sections of `src/ffi`; the sizes and offsets
-//! that the headers assert come from `src/ffi/layout.rs`, where Rust asserts them too. The
-//! constants of choices come from their lists, see [`lahar::choice`]. The list of exported symbols,
-//! `include/lahar/symbols.txt`, is made from the same sources.
+//! cbindgen translates one Rust file at a time, so that the header has the sections of `src/ffi`;
+//! the sizes and offsets that the headers assert come from `src/ffi/layout.rs`, where Rust asserts
+//! them too. The constants of choices come from their lists, see [`lahar::choice`]. The list of
+//! exported symbols, `include/lahar/symbols.txt`, is made from the same sources.
 
 use lahar::background::GridPolicy;
 use lahar::boundary::WallKind;
@@ -42,7 +43,8 @@ const SECTIONS: [(&str, &[List]); 17] = [
 const WORLD_CHOICES: [List; 5] =
     [ShapeKind::LIST, WallTreatment::LIST, TransferKind::LIST, StepOrder::LIST, GridPolicy::LIST];
 
-/// Writes the headers and the symbol list, or with `check` reports those that differ from the sources.
+/// Writes the headers and the symbol list, or with `check` reports those that differ from the
+/// sources.
 pub fn run(check: bool) -> Result<(), String> {
     let root = root()?;
     let folder = root.join("include/lahar");
@@ -254,39 +256,46 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
  *
  * Generated from src/ffi by `cargo xtask headers`; do not edit.
  *
- * Statuses. Functions return a lahar_status: 0 done; positive: refused, nothing has changed; negative: the object is
- * poisoned, it answers queries and can be freed. lahar_last_error_message tells what was expected, what was received and
- * what to do. Nothing prints, exits or aborts.
+ * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
+ * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
+ * a text that says what was expected, what was received and what to do. No function prints, exits or
+ * aborts.
  *
- * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. `create` sets its output to NULL first,
- * and to the object only if it succeeds. `free` ignores NULL; freeing in any order is safe, children keep their parents
- * alive. A handle must not be used after it was freed. Bodies and walls are int64_t ids, never used again.
+ * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
+ * object first set the handle to NULL, and to the object only if they succeed. Functions that free
+ * ignore NULL. Objects may be freed in any order: a context lives as long as its worlds and materials, a
+ * world as long as its views. A handle must not be used after it was freed. Bodies, walls, prescribed
+ * velocities and tractions have int64_t ids, which are never used again.
  *
- * Pointers must not be NULL unless it is said. Arrays of the host are read or written during the call only. Texts are
- * NUL-terminated UTF-8. Texts that lahar returns by pointer are static: they live as long as the process.
+ * Pointers must not be NULL unless the text says so. Arrays of the host are read or written only during
+ * the call, except through views. Texts are NUL-terminated UTF-8. Texts that lahar returns by pointer are
+ * static: they are valid until the process ends.
  *
- * Structs begin with `struct_size`, their sizeof, so that they can grow at the end. Structs with an init function are
- * filled by it; in the others, which lahar fills, the host sets `struct_size` and lahar zeroes what it does not know.
+ * Structs begin with `struct_size`, their sizeof, so that fields can be added at the end. Structs that
+ * have an init function are filled by it. In the others, which lahar fills, the host sets
+ * `struct_size`, and lahar sets fields that it does not know to zero.
  *
- * Units are SI in this text; any consistent ones may be used. Tension is positive. Symmetric tensors have the components
- * xx, yy, zz, xy, yz, zx, in two dimensions too.
+ * Units are SI in this text; any consistent units may be used. Tension is positive. Symmetric tensors
+ * have the components xx, yy, zz, xy, yz, zx, in two dimensions too.
  *
  * Threads. Each function has a tag.
  *   Thread: any          from any thread at any time, and from callbacks
- *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another thread changes the
- *                        object
- *   Thread: owner        changes or frees the object: by one thread at a time (another gets LAHAR_ERROR_BUSY, except from
- *                        a free, before which the host must have ended all other use), not from callbacks
+ *   Thread: callback-ok  a query: from any thread and from callbacks; LAHAR_ERROR_BUSY while another
+ *                        thread changes the object
+ *   Thread: owner        changes or frees the object: by one thread at a time, not from callbacks. A
+ *                        second thread gets LAHAR_ERROR_BUSY; but before an object is freed the host
+ *                        must have ended all other use of its handle.
  *
- * Floating point. Every function saves the host's environment (rounding, traps), works in the default one, and restores
- * the host's; callbacks run in the host's.
+ * Floating point. Every function saves the host's floating-point environment (rounding, traps), works in
+ * the default one, and restores the host's. Callbacks run in the host's environment.
  */
 
 "#;
 
 const PLUGIN_TABLE: &str = "\n// The tables of plugins and of the engine, defined in lahar_plugin.h.\nstruct lahar_plugin_desc;\nstruct lahar_host_api;\n";
 
-const PLUGIN_INTRODUCTION: &str = r#"/* lahar_plugin.h: the interface between lahar and constitutive models. Types and tables only: a plugin links nothing.
+const PLUGIN_INTRODUCTION: &str = r#"/* lahar_plugin.h: the interface between lahar and constitutive models. It has types and tables only: a
+ * plugin is not linked with lahar.
  *
  * Generated from plugins/abi by `cargo xtask headers`; do not edit.
  */
@@ -311,7 +320,8 @@ const PLUGIN_ENTRY: &str = r#"
 // [exclusive; once in a process, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_entry_v1(const lahar_host_api *host);
 
-// Defined by adapters instead of the entry: a plugin made of the foreign library at `path`, or NULL to refuse, after `set_error`.
+// Defined by adapters instead of the entry: the tables of a plugin made of the foreign library at
+// `path`, or NULL to refuse, after `set_error`.
 // [exclusive; once for each library, again only after it has refused]
 LAHAR_PLUGIN_EXPORT const lahar_plugin_desc *lahar_plugin_adapt_v1(const lahar_host_api *host, const char *path);
 "#;
