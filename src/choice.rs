@@ -1,7 +1,8 @@
 //! Choices: what an option, or the kind of a thing, can be. Each choice is one list.
 //!
-//! The macro `choices!` makes an enum of a list, with the number, the key and the name of each value. The
-//! constants of `lahar.h` and `lahar.f90` are written from the same list by `cargo xtask headers`.
+//! The macro `choices!` makes an enum of a list, with the number, the key and the name of each
+//! value. The constants of `lahar.h` and `lahar.f90` are written from the same list by `cargo xtask
+//! headers`.
 
 use crate::error::{Error, Result};
 use std::ffi::CStr;

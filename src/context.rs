@@ -15,7 +15,8 @@ use std::sync::{Arc, PoisonError, RwLock};
 /// Largest number of threads of a context.
 pub const MAX_THREADS: usize = 1024;
 
-/// Threads, log and loaded plugins. Worlds and materials keep their context alive.
+/// Threads, log and loaded plugins. A context lives as long as one of its worlds or
+/// materials.
 pub struct Context {
     threads: Arc<Threads>,
     isa: Isa,
@@ -25,12 +26,15 @@ pub struct Context {
 }
 
 impl Context {
-    /// A context with `threads` threads: `None` stands for `LAHAR_NUM_THREADS`, and for 1 where that is not set.
-    /// One thread means that everything runs on the calling thread and none is started.
+    /// A context with `threads` threads: `None` stands for `LAHAR_NUM_THREADS`, and for 1 where
+    /// that is not set. One thread means that everything runs on the calling thread and none is
+    /// started.
     ///
-    /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a `LAHAR_NUM_THREADS` that is no such
-    /// number, a `LAHAR_SIMD` that is unknown or that the processor lacks, or a `LAHAR_CHECK_PLUGINS` other than 0 and 1; [`Status::Threads`] if the system gives no threads;
-    /// [`Status::File`] if `LAHAR_CAPSULES` is no folder, see [`Context::set_capsule_folder`].
+    /// Errors: [`Status::InvalidArgument`] for 0, more than [`MAX_THREADS`] or a
+    /// `LAHAR_NUM_THREADS` that is no such number, a `LAHAR_SIMD` that is unknown or that the
+    /// processor lacks, or a `LAHAR_CHECK_PLUGINS` other than 0 and 1; [`Status::Threads`] if the
+    /// system gives no threads; [`Status::File`] if `LAHAR_CAPSULES` is no folder, see
+    /// [`Context::set_capsule_folder`].
     pub fn new(threads: Option<usize>) -> Result<Arc<Context>> {
         Self::with_isa(threads, Isa::of_environment()?)
     }
@@ -54,7 +58,8 @@ impl Context {
         Ok(Arc::new(Context { threads, isa, log, plugins, capsules }))
     }
 
-    /// The instruction set that kernels use: what `LAHAR_SIMD` asks for (`scalar`, `avx2`, `avx512`), or the best that the processor has.
+    /// The instruction set that kernels use: what `LAHAR_SIMD` asks for (`scalar`, `avx2`,
+    /// `avx512`), or the best that the processor has.
     pub fn isa(&self) -> Isa {
         self.isa
     }
@@ -64,7 +69,8 @@ impl Context {
         self.threads.count()
     }
 
-    /// How many distinct threads have run tasks of this context so far; see [`Context::mark_worker`].
+    /// How many distinct threads have run tasks of this context so far; see
+    /// [`Context::mark_worker`].
     pub fn threads_used(&self) -> usize {
         self.threads.used()
     }
@@ -74,7 +80,8 @@ impl Context {
         Team::new(&self.threads)
     }
 
-    /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go through.
+    /// Runs `f` inside the pool, or on the calling thread if there is one thread. Panics of `f` go
+    /// through.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         self.threads.install(f)
     }
@@ -94,16 +101,18 @@ impl Context {
         self.threads.mark();
     }
 
-    /// Error [`Status::Threads`] if this process was forked after the threads had been started: they did not come along.
+    /// Error [`Status::Threads`] if this process was forked after the threads had been started: a
+    /// fork does not copy them.
     pub fn check_process(&self) -> Result<()> {
         self.threads.check_process()
     }
 
     /// Loads a plugin into this context and returns its index in [`Context::plugins`].
     ///
-    /// A text with a `/` is a path. Any other is a name that is looked for in the folders of `LAHAR_PLUGIN_PATH`
-    /// (separated by `:`), then in `lahar/plugins-1` beside this library: `lahar_newtonian` becomes `liblahar_newtonian.so`; the current
-    /// directory is not searched. Of a library that is no plugin the adapter `lahar_umat`, if it is found by its name, makes one.
+    /// A text with a `/` is a path. Any other is a name that is looked for in the folders of
+    /// `LAHAR_PLUGIN_PATH` (separated by `:`), then in `lahar/plugins-1` beside this library:
+    /// `lahar_newtonian` becomes `liblahar_newtonian.so`; the current directory is not searched. Of
+    /// a library that is no plugin the adapter `lahar_umat`, if it is found by its name, makes one.
     /// The same file gives the same index again. Libraries stay loaded until the process ends.
     ///
     /// Errors: [`Status::PluginNotFound`], [`Status::PluginInvalid`], [`Status::PluginAbi`],
@@ -113,10 +122,12 @@ impl Context {
         self.add(plugin::load(name_or_path)?)
     }
 
-    /// Takes a plugin that is linked into the program by its entry, such as `lahar_model_linear_elastic::plugin`, and returns its
-    /// index in [`Context::plugins`]. The same entry gives the same index again. The plugin's path is its id in brackets.
+    /// Registers a plugin that is linked into the program by its entry, such as
+    /// `lahar_model_linear_elastic::plugin`, and returns its index in [`Context::plugins`]. The
+    /// same entry gives the same index again. The plugin's path is its id in brackets.
     ///
-    /// Errors: [`Status::PluginInvalid`], [`Status::PluginAbi`], [`Status::PluginRefused`]. The list of plugins is then what it was.
+    /// Errors: [`Status::PluginInvalid`], [`Status::PluginAbi`], [`Status::PluginRefused`]. The
+    /// list of plugins is then what it was.
     pub fn register_plugin(&self, entry: RustEntry) -> Result<usize> {
         self.register(StaticEntry::rust(entry))
     }
@@ -191,8 +202,9 @@ impl Context {
         self.plugins().into_iter().find(|p| p.models.iter().any(|m| std::ptr::eq(m, model)))
     }
 
-    /// Sets the folder to which a step that fails at a point writes a [capsule](crate::material::Capsule); `None` for nowhere. At first it
-    /// is that of the environment variable `LAHAR_CAPSULES`. Error: [`Status::File`] if it is no folder.
+    /// Sets the folder to which a step that fails at a point writes a
+    /// [capsule](crate::material::Capsule); `None` for nowhere. At first it is that of the
+    /// environment variable `LAHAR_CAPSULES`. Error: [`Status::File`] if it is no folder.
     pub fn set_capsule_folder(&self, folder: Option<&Path>) -> Result<()> {
         let folder = folder.map(|folder| checked_folder(folder, "the folder of failure capsules"));
         *self.capsules.write().unwrap_or_else(PoisonError::into_inner) = folder.transpose()?;
@@ -209,13 +221,14 @@ impl Context {
         self.log.push(level as i32, text);
     }
 
-    /// Sets who gets the lines of the log: those of level at most `max_level` (see [`LogLevel`]); `None` for nobody.
+    /// Sets the sink of log lines of level at most `max_level` (see [`LogLevel`]); `None`: no log.
     /// Lines that are waiting go to the new sink.
     pub fn set_log(&self, sink: Option<LogSink>, max_level: i32) {
         self.log.set_sink(sink, max_level);
     }
 
-    /// Delivers the lines that workers and plugins have queued, on the calling thread and outside any lock.
+    /// Delivers the lines that workers and plugins have queued, on the calling thread and outside
+    /// any lock.
     pub fn flush_log(&self) {
         self.log.flush();
     }
@@ -225,7 +238,8 @@ impl Context {
     }
 }
 
-/// The folder by its full path, so that it stays what it is when the process goes elsewhere.
+/// The folder by its full path, so that it stays the same if the process changes its current
+/// folder.
 fn checked_folder(folder: &Path, what: &str) -> Result<PathBuf> {
     let full = folder.canonicalize().and_then(|full| match full.is_dir() {
         true => Ok(full),

@@ -1,7 +1,7 @@
 //! The log: lines are queued wherever they arise and delivered on the thread of the caller.
 //!
-//! Each thread that works for a context points at the context's queue, so that a plugin, which knows no context, can
-//! log: workers for all their life, callers inside a [`LogScope`].
+//! Each thread that works for a context has the context's queue, so that a plugin, which knows no
+//! context, can log: workers for all their life, callers inside a [`LogScope`].
 
 use crate::choice::choices;
 use std::cell::RefCell;
@@ -24,7 +24,7 @@ choices! {
     }
 }
 
-/// Who gets the lines: called with the level and the text.
+/// Sink of log lines: called with the level and the text.
 pub type LogSink = Arc<dyn Fn(i32, &str) + Send + Sync>;
 
 /// Lines beyond this number are counted and dropped until the next delivery.
@@ -89,14 +89,14 @@ thread_local! {
     static CURRENT: RefCell<Option<Arc<LogQueue>>> = const { RefCell::new(None) };
 }
 
-/// Points the running thread at a queue for good: start of a worker.
+/// Sets the queue of the running thread until it ends: for the start of a worker.
 pub(crate) fn adopt(queue: &Arc<LogQueue>) {
     CURRENT.set(Some(Arc::clone(queue)));
 }
 
-/// Queues a line where the running thread points; nobody hears it elsewhere.
+/// Queues a line in the queue of the running thread; without a queue the line is dropped.
 pub(crate) fn push_current(level: i32, text: &str) {
-    // A thread that is being taken down has no queue any more.
+    // A thread that is being destroyed has no queue any more.
     let _ = CURRENT.try_with(|current| {
         if let Ok(current) = current.try_borrow()
             && let Some(queue) = current.as_ref()
@@ -106,7 +106,7 @@ pub(crate) fn push_current(level: i32, text: &str) {
     });
 }
 
-/// Points the running thread at a queue until it is dropped.
+/// Sets the queue of the running thread until it is dropped.
 pub(crate) struct LogScope {
     previous: Option<Arc<LogQueue>>,
 }
@@ -116,7 +116,7 @@ impl LogScope {
         Self { previous: CURRENT.replace(Some(Arc::clone(queue))) }
     }
 
-    /// Enters only where the thread points at no queue: cheap on workers.
+    /// Sets the queue only if the thread has none: cheap on workers.
     pub(crate) fn enter_if_none(queue: &Arc<LogQueue>) -> Option<Self> {
         CURRENT.with_borrow(Option::is_none).then(|| Self::enter(queue))
     }

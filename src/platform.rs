@@ -1,9 +1,10 @@
-//! Threads whose panics print nothing: callers inside an entry of the C interface, and workers for all their life.
+//! Threads whose panics print nothing: callers inside an entry of the C interface, and workers for
+//! all their life.
 
 use std::cell::Cell;
 
 thread_local! {
-    /// How many entries this thread is inside of; a worker thread counts as inside for good.
+    /// How many entries this thread is inside of; a worker thread always counts as inside.
     static INSIDE: Cell<u32> = const { Cell::new(0) };
 }
 

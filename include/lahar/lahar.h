@@ -242,7 +242,7 @@ typedef struct lahar_plugin_info {
     const char *author;
     // Licence, an SPDX expression.
     const char *licence;
-    // Where to find it; may be empty.
+    // Its address in the web; may be empty.
     const char *url;
     // The file that was loaded; for a registered plugin its id in brackets.
     const char *path;
@@ -726,8 +726,8 @@ typedef struct lahar_world_options {
     // One of LAHAR_WALLS_*.
     int32_t wall_treatment;
     // 1: axial symmetry about the y axis, in two dimensions only: x is the radius, and volumes,
-    // masses and forces are per radian; default 0. Gravity must act along y. Put a slip wall at x
-    // = 0: if a particle crosses the axis, the next step is refused.
+    // masses and forces are per radian; default 0. Gravity must act along y. The axis needs a slip
+    // wall at x = 0: if a particle crosses the axis, the next step is refused.
     int32_t axisymmetric;
     // Terms of the filter of LAHAR_TRANSFER_XPIC and LAHAR_TRANSFER_FMPM, 1 (as PIC) to 20, or 0
     // for the default, 2. Each term costs one more transfer to the grid and back.

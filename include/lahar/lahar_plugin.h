@@ -18,27 +18,33 @@ extern "C" {
  *
  * The contract between lahar and a constitutive model: types and constants only.
  *
- * `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that exports one function,
- * `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the name is the major version of the ABI;
- * within a major version tables only grow at their end and every table begins with its size.
+ * `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that
+ * exports one function, `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the
+ * name is the major version of the ABI; within a major version tables only grow at their end and
+ * every table begins with its size.
  *
- * Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as the tensor
- * components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
- * gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
+ * Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as
+ * the tensor components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx,
+ * ...; stresses have 6 and gradients 9 components in plane strain too. Component `c` of point `k`
+ * of an array stands at `base[c * stride + k]`.
  *
- * Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
- * extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
+ * Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of
+ * `init_state`, `update`, `wave_speed` and extension calls, then `destroy`. Libraries are never
+ * unloaded. Each function has a tag:
  *
  * * `[exclusive]`: one such call at a time in the whole process, on any thread;
- * * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as exclusive ones. If the model does not
- *   declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either kind come one at a time over all such models of the library.
+ * * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as
+ *   exclusive ones. If the model does not declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either
+ *   kind come one at a time over all such models of the library.
  *
- * No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
- * may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
+ * No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it
+ * is called with traps off. The engine may call `update` with the same start any number of times:
+ * the end must depend only on the start, the step and the instance.
  *
- * Versions: tables grow only at their ends, and both sides tell their minor version. A plugin that needs a newer engine says so in
- * `required_minor` of the model, or refuses in its entry after a look at `abi_minor` of the host table. An engine takes tables that
- * are longer than it knows, and fills a batch as far as its own `struct_size`.
+ * Versions: tables grow only at their ends, and both sides give their minor version. A plugin that
+ * needs a newer engine sets `required_minor` of the model, or refuses in its entry if `abi_minor`
+ * of the host table is too low. An engine accepts tables that are longer than those that it knows,
+ * and fills a batch up to its own `struct_size`.
  */
 
 // Major version of the plugin ABI; it is part of the entry's name.
@@ -47,8 +53,8 @@ extern "C" {
 // Minor version: tables may have grown at their ends since lower minors.
 #define LAHAR_PLUGIN_ABI_MINOR 0
 
-// The model takes the strain increment; the engine has turned the start stress (and objective state) by exp(W dt), W = skw L:
-// the Jaumann rate.
+// The model takes the strain increment; the engine has turned the start stress (and objective
+// state) by exp(W dt), W = skw L: the Jaumann rate.
 #define LAHAR_KINEMATICS_STRAIN_INCREMENT 0
 
 // The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
@@ -57,8 +63,9 @@ extern "C" {
 // The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
 #define LAHAR_KINEMATICS_DEFORMATION_GRADIENT 2
 
-// The model takes the strain increment; the engine has turned the start stress (and objective state) by the increment of the
-// rotation R of F = R U instead of by exp(W dt): the Green-Naghdi rate.
+// The model takes the strain increment; the engine has turned the start stress (and objective
+// state) by the increment of the rotation R of F = R U instead of by exp(W dt): the Green-Naghdi
+// rate.
 #define LAHAR_KINEMATICS_GREEN_NAGHDI 3
 
 // A real number.
@@ -97,8 +104,9 @@ extern "C" {
 // Input: temperature [K], the particle field `temperature` of the host.
 #define LAHAR_INPUT_TEMPERATURE 3
 
-// Input: specific internal energy at the start of the step [J/kg]: the particle field `strain_energy` over the mass. The field follows the
-// work of the stress, or the output `energy` of a model that gives it.
+// Input: specific internal energy at the start of the step [J/kg]: the particle field
+// `strain_energy` over the mass. The field follows the work of the stress, or the output `energy`
+// of a model that gives it.
 #define LAHAR_INPUT_INTERNAL_ENERGY 4
 
 // Input: pore pressure, compression positive [Pa], the particle field `pore_pressure` of the host.
@@ -122,11 +130,12 @@ extern "C" {
 // Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
 #define LAHAR_OUTPUT_DIFFUSIVITY 2
 
-// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces the engine's work integral.
+// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces
+// the engine's work integral.
 #define LAHAR_OUTPUT_ENERGY 4
 
-// Output: factor by which the model wants the time step changed, in (0, 1] [-]. Below 1 the engine repeats the step smaller if the host
-// allows that, else it shortens the next one.
+// Output: factor on the time step that the model asks for, in (0, 1] [-]. Below 1 the engine
+// repeats the step with a smaller length if the host allows that, else it shortens the next step.
 #define LAHAR_OUTPUT_DT_FACTOR 8
 
 // Output: one of the `LAHAR_POINT_*` per point.
@@ -144,13 +153,15 @@ extern "C" {
 // The extension `lahar.tangent` is offered.
 #define LAHAR_CAPABILITY_TANGENT 8
 
-// The model may end the process (`STOP` of legacy code); the engine warns when it loads the plugin.
+// The model may end the process (`STOP` of legacy code); the engine warns when it loads the
+// plugin.
 #define LAHAR_CAPABILITY_MAY_STOP 16
 
 // The model may print (legacy code); the engine warns when it loads the plugin.
 #define LAHAR_CAPABILITY_MAY_PRINT 32
 
-// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split copies.
+// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split
+// copies.
 #define LAHAR_TRANSFER_MEAN 0
 
 // Transfer rule: the largest, component by component.
@@ -162,10 +173,12 @@ extern "C" {
 // The point is updated.
 #define LAHAR_POINT_OK 0
 
-// The point is updated, but the result is less accurate than promised; the engine logs the first of them.
+// The point is updated, but the result is less accurate than promised; the engine logs the first
+// of them.
 #define LAHAR_POINT_UNRELIABLE 1
 
-// The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
+// The point is updated, but the model asks for a smaller step: by the factor `dt_factor`, or by
+// one half without that output.
 #define LAHAR_POINT_SMALLER_STEP 2
 
 // The point could not be updated; its end is not used.
@@ -189,19 +202,20 @@ extern "C" {
 // Level: details for finding a fault.
 #define LAHAR_PLUGIN_LOG_DETAIL 3
 
-// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only members inside `struct_size`.
+// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only
+// members inside `struct_size`.
 typedef struct lahar_host_api {
     // Size of this table in bytes, as the engine knows it.
     uint32_t struct_size;
-    // Minor version of the ABI that the engine speaks.
+    // Minor version of the ABI that the engine has.
     uint32_t abi_minor;
-    // Hands a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is copied. Heard while a function of the
-    // plugin runs. [concurrent]
+    // Passes a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is
+    // copied. It has an effect only while a function of the plugin runs. [concurrent]
     void (*log)(int32_t level, const char *message);
-    // Sets the text that explains why the function that is running returns an error; `message` is copied.
-    // [concurrent]
+    // Sets the text that explains why the function that is running returns an error; `message` is
+    // copied. [concurrent]
     void (*set_error)(const char *message);
-    // 1 if the host wants long work to end, else 0. [concurrent]
+    // 1 if the host asks long work to end, else 0. [concurrent]
     int32_t (*should_stop)(void);
 } lahar_host_api;
 
@@ -209,7 +223,7 @@ typedef struct lahar_host_api {
 typedef struct lahar_parameter_desc {
     // Name by which hosts give the value: `youngs_modulus`.
     const char *key;
-    // Symbol of the literature: `E`.
+    // Symbol used in the literature: `E`.
     const char *symbol;
     // SI unit: `Pa`, `-`.
     const char *unit;
@@ -219,7 +233,8 @@ typedef struct lahar_parameter_desc {
     int32_t kind;
     // 1: the host must give it; 0: `default_value` is used.
     int32_t required;
-    // Value if the host gives none, inside the hard bounds. Of a required parameter a typical value, with which tools try the model.
+    // Value if the host gives none, inside the hard bounds. Of a required parameter a typical
+    // value, with which tools try the model.
     double default_value;
     // Smallest value that is accepted; -infinity for none.
     double hard_min;
@@ -249,7 +264,8 @@ typedef struct lahar_state_desc {
     double initial;
 } lahar_state_desc;
 
-// A run of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least `n`) and do not alias each other.
+// A batch of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least
+// `n`) and do not alias each other.
 typedef struct lahar_stress_batch {
     // Size of this struct in bytes, as the engine knows it.
     uint32_t struct_size;
@@ -269,11 +285,13 @@ typedef struct lahar_stress_batch {
     const double *strain_increment;
     // Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
     const double *velocity_gradient;
-    // Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics ask for it.
+    // Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics
+    // ask for it.
     const double *deformation_gradient;
     // Cauchy stress at the start, 6 components [Pa]; never written.
     const double *stress0;
-    // State at the start, the components of all state variables in the descriptor's order; never written.
+    // State at the start, the components of all state variables in the descriptor's order; never
+    // written.
     const double *state0;
     // Cauchy stress at the end, 6 components [Pa]; written by `update`.
     double *stress1;
@@ -287,24 +305,25 @@ typedef struct lahar_stress_batch {
     double *diffusivity;
     // Energy per current volume [J/m^3]; NULL unless declared.
     double *energy;
-    // Wanted factor on the next time step [-]; NULL unless declared.
+    // Factor on the time step that the model asks for [-]; NULL unless declared.
     double *dt_factor;
     // `LAHAR_POINT_*` per point, zero on entry; NULL unless declared.
     int32_t *status;
 } lahar_stress_batch;
 
-// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process. Functions that have no
-// instance yet are given the table, so that models may share them.
+// One constitutive model: static tables and functions. All pointers must stay valid for the life
+// of the process. Functions that have no instance yet are given the table, so that models may
+// share them.
 typedef struct lahar_model_desc {
     // Size of this table in bytes, as the plugin knows it.
     uint32_t struct_size;
     // One of `LAHAR_KINEMATICS_*`.
     int32_t kinematics;
-    // Name by which hosts ask for the model: ASCII, unique.
+    // Name by which hosts select the model: ASCII, unique.
     const char *name;
     // One sentence.
     const char *summary;
-    // Where the model is published, with a DOI if there is one.
+    // Publication of the model, with a DOI if there is one.
     const char *reference;
     // Number of parameters.
     uint32_t parameter_count;
@@ -328,33 +347,37 @@ typedef struct lahar_model_desc {
     uint64_t outputs;
     // Sum of `LAHAR_CAPABILITY_*`.
     uint64_t capabilities;
-    // Makes an instance of `model`, this table, from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
-    // `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
+    // Makes an instance of `model`, this table, from one value per parameter, inside the hard
+    // bounds; the model must copy what it needs of `values`. Mandatory. Returns `LAHAR_PLUGIN_OK`,
+    // or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
     int32_t (*create)(const struct lahar_model_desc *model,
                       const double *values,
                       int64_t count,
                       void **instance);
     // Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     void (*destroy)(void *instance);
-    // Says whether the values go together; if not, writes a NUL-terminated sentence into `capacity` bytes. May be NULL.
-    // [exclusive; before create]
+    // Says whether the values can be combined; if not, writes a NUL-terminated sentence of at most
+    // `capacity` bytes to `message`. May be NULL. [exclusive; before create]
     int32_t (*check)(const struct lahar_model_desc *model,
                      const double *values,
                      int64_t count,
                      char *message,
                      int64_t capacity);
-    // Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
-    // [concurrent; between create and destroy]
+    // Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial
+    // values. May be NULL. [concurrent; between create and destroy]
     int32_t (*init_state)(const void *instance, const lahar_stress_batch *batch);
-    // One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of every point. Mandatory. A point that
-    // fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for a batch that makes no sense. [concurrent; between create and destroy]
+    // One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of
+    // every point. Mandatory. A point that fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for
+    // a batch that cannot be processed at all. [concurrent; between create and destroy]
     int32_t (*update)(const void *instance, const lahar_stress_batch *batch);
-    // Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
-    // deformation gradient. Mandatory. [concurrent; between create and destroy]
+    // Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the
+    // kinematics ask for it, the deformation gradient. Mandatory. [concurrent; between create and
+    // destroy]
     int32_t (*wave_speed)(const void *instance, const lahar_stress_batch *batch);
-    // A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
-    // (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
-    // begin with. [exclusive; after the entry]
+    // A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent`
+    // (lahar_tangent_extension), `lahar.energy` (lahar_energy_extension), `lahar.transfer`
+    // (lahar_transfer_extension); others belong to whoever owns the domain name that they begin
+    // with. [exclusive; after the entry]
     const void *(*get_extension)(const struct lahar_model_desc *model, const char *id);
 } lahar_model_desc;
 
@@ -364,10 +387,11 @@ typedef struct lahar_tangent_extension {
     uint32_t struct_size;
     // 0.
     uint32_t reserved;
-    // The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of point `k`, at
-    // `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component i by strain increment component j. A shear
-    // component of the increment stands for both of its places, so that elasticity has 2 G there. Outputs of the batch may be NULL.
-    // [concurrent; between create and destroy]
+    // The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of
+    // point `k`, at `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component
+    // i by strain increment component j. A shear component of the increment stands for two
+    // components of the tensor, such as xy and yx, so that elasticity has 2 G there. Outputs of
+    // the batch may be NULL. [concurrent; between create and destroy]
     int32_t (*tangent)(const void *instance, const lahar_stress_batch *batch, double *tangent);
 } lahar_tangent_extension;
 
@@ -377,12 +401,14 @@ typedef struct lahar_energy_extension {
     uint32_t struct_size;
     // 0.
     uint32_t reserved;
-    // Energy per current volume [J/m^3], one value per point, that can be had back from `stress0`, `state0` and, if the kinematics ask for
-    // it, the deformation gradient. Outputs of the batch may be NULL. [concurrent; between create and destroy]
+    // Energy per current volume [J/m^3], one value per point, that can be recovered, from
+    // `stress0`, `state0` and, if the kinematics ask for it, the deformation gradient. Outputs of
+    // the batch may be NULL. [concurrent; between create and destroy]
     int32_t (*stored)(const void *instance, const lahar_stress_batch *batch, double *energy);
 } lahar_energy_extension;
 
-// Extension `lahar.transfer`: what becomes of state variables when points are merged. Without it every rule is the mean.
+// Extension `lahar.transfer`: how state variables are combined when points are merged. Without it
+// every rule is the mean.
 typedef struct lahar_transfer_extension {
     // Size of this table in bytes, as the plugin knows it.
     uint32_t struct_size;
@@ -392,7 +418,7 @@ typedef struct lahar_transfer_extension {
     const int32_t *rules;
 } lahar_transfer_extension;
 
-// What a plugin is. All pointers must stay valid for the life of the process.
+// Description of a plugin. All pointers must stay valid for the life of the process.
 typedef struct lahar_plugin_desc {
     // Size of this table in bytes, as the plugin knows it.
     uint32_t struct_size;
@@ -410,19 +436,20 @@ typedef struct lahar_plugin_desc {
     const char *author;
     // SPDX licence expression.
     const char *licence;
-    // Where to find it; may be empty.
+    // Its address in the web; may be empty.
     const char *url;
     // The models, one pointer each.
     const lahar_model_desc *const *models;
 } lahar_plugin_desc;
 
-// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after `set_error`.
-// [exclusive; once in a process, again only after it has refused]
+// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after
+// `set_error`. [exclusive; once in a process, again only after it has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_entry)(const lahar_host_api *host);
 
-// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it makes a plugin of the foreign library at `path`
-// (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
-// after it has refused]
+// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it
+// makes a plugin of the foreign library at `path` (a canonical path), for example of one with a
+// UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only after it
+// has refused]
 typedef const lahar_plugin_desc *(*lahar_plugin_adapt)(const lahar_host_api *host,
                                                               const char *path);
 

@@ -14,7 +14,7 @@ pub const Y: i32 = 2;
 /// The component along z.
 pub const Z: i32 = 4;
 
-/// The nodes in a box move as told, whatever pulls at them.
+/// The nodes in a box move with a given velocity, whatever the forces on them.
 #[derive(Clone, Debug)]
 pub struct PrescribedVelocity {
     /// Where: the nodes in this box, to 1e-9 of the spacing.
@@ -45,7 +45,7 @@ impl PrescribedVelocity {
         self.components >> axis & 1 == 1
     }
 
-    /// Calls `visit` with the places in block `key` of the nodes inside the box.
+    /// Calls `visit` for each node of block `key` inside the box, with its index in the block.
     pub fn for_nodes_inside<const D: usize>(
         &self,
         space: &Space<D>,

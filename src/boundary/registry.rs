@@ -1,5 +1,5 @@
-//! The conditions of a world, kind by kind: ids, forces, limits of the time step, ends of tables. A new kind
-//! is a line of [`Conditions`] and an implementation of [`Condition`].
+//! The conditions of a world, kind by kind: ids, forces, limits of the time step, ends of tables. A
+//! new kind is a line of [`Conditions`] and an implementation of [`Condition`].
 
 use super::{Loaded, Prescribed, Table, Wall};
 use crate::background::Background;
@@ -83,7 +83,7 @@ impl<C: Condition> List<C> {
         id
     }
 
-    /// Takes a condition away. Error: [`Status::NotFound`].
+    /// Removes a condition. Error: [`Status::NotFound`].
     pub fn remove(&mut self, id: i64) -> Result<()> {
         let at = self.position(id)?;
         self.entries.remove(at);
@@ -135,14 +135,16 @@ macro_rules! conditions {
         }
 
         impl Conditions {
-            /// Forces on the material in the last step [N]: what a step that is taken back must restore.
+            /// Forces on the material in the last step [N]: what a step that is taken back must
+            /// restore.
             pub fn forces(&mut self) -> impl Iterator<Item = &mut [f64; 3]> {
                 let all = std::iter::empty();
                 $(let all = all.chain(self.$name.iter_mut().map(|entry| &mut entry.force));)+
                 all
             }
 
-            /// The last time at which a table changes something [s]; negative infinity if none does.
+            /// The last time at which a table changes something [s]; negative infinity if none
+            /// does.
             pub fn end(&self) -> f64 {
                 let gravity = self.gravity.as_ref().map_or(f64::NEG_INFINITY, Table::end);
                 let all = std::iter::once(gravity);
@@ -150,11 +152,11 @@ macro_rules! conditions {
                 all.fold(f64::NEG_INFINITY, f64::max)
             }
 
-            /// The longest step from `now` on that is at most `dt` [s] and in which no node is sent farther
-            /// than `way` [m].
-            pub fn limit(&self, now: f64, mut dt: f64, way: f64) -> f64 {
+            /// The longest step from `now` on that is at most `dt` [s] and in which no condition
+            /// moves a node farther than `distance` [m].
+            pub fn limit(&self, now: f64, mut dt: f64, distance: f64) -> f64 {
                 $(for entry in self.$name.iter() {
-                    dt = dt.min(way / entry.condition.largest_speed(now, now + dt));
+                    dt = dt.min(distance / entry.condition.largest_speed(now, now + dt));
                 })+
                 dt
             }

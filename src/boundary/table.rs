@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 
-/// Rows of time [s] and three values; before the first row and after the last one the values of that row hold.
+/// Rows of time [s] and three values; before the first row and after the last one the values of
+/// that row hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     times: Vec<f64>,
@@ -15,7 +16,8 @@ impl Table {
         Self { times: vec![0.0], values: vec![value] }
     }
 
-    /// A table with these rows. Times must increase and all numbers be finite; `what` names the table in errors.
+    /// A table with these rows. Times must increase and all numbers be finite; `what` names the
+    /// table in errors.
     pub fn new(what: &str, times: &[f64], values: &[[f64; 3]]) -> Result<Self> {
         if times.is_empty() || times.len() != values.len() {
             return Err(Error::invalid(format!(
@@ -42,10 +44,10 @@ impl Table {
         Ok(Self { times: times.to_vec(), values: values.to_vec() })
     }
 
-    /// The same table with zeros in the components that are not kept.
-    pub fn keeping(mut self, keeps: impl Fn(usize) -> bool) -> Self {
+    /// The same table with zeros in the components for which `is_used` is false.
+    pub fn keeping(mut self, is_used: impl Fn(usize) -> bool) -> Self {
         for value in &mut self.values {
-            (0..3).filter(|c| !keeps(*c)).for_each(|c| value[c] = 0.0);
+            (0..3).filter(|c| !is_used(*c)).for_each(|c| value[c] = 0.0);
         }
         self
     }
@@ -69,8 +71,8 @@ impl Table {
         std::array::from_fn(|c| a[c] + part * (b[c] - a[c]))
     }
 
-    /// The largest length of the vector of values in a span of time: it is that of an end or of a row, since the length of what changes
-    /// linearly is convex.
+    /// The largest length of the vector of values in a span of time: it is that of an end or of a
+    /// row, since the length of what changes linearly is convex.
     pub fn largest(&self, from: f64, until: f64) -> f64 {
         let rows =
             self.times.partition_point(|t| *t <= from)..self.times.partition_point(|t| *t < until);

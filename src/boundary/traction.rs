@@ -4,7 +4,8 @@ use super::{BoxRegion, Condition, Table};
 use crate::error::{Error, Place, Result};
 use crate::particles::Body;
 
-/// A dead load on a plane surface of a body: force per area of the surface as it was when the body was added.
+/// A dead load on a plane surface of a body: force per area of the surface as it was when the body
+/// was added.
 #[derive(Clone, Debug)]
 pub struct Traction {
     /// Id of the body.
@@ -39,7 +40,8 @@ impl Traction {
         Ok(())
     }
 
-    /// The particles of the body that carry the load, in the order of their ids; areas are per radian if the world is `axisymmetric`.
+    /// The particles of the body that carry the load, in the order of their ids; areas are per
+    /// radian if the world is `axisymmetric`.
     pub fn surface<const D: usize>(&self, body: &Body, axisymmetric: bool) -> Result<Surface> {
         let particles = &body.particles;
         let mut chosen = Vec::new();
@@ -55,7 +57,7 @@ impl Traction {
                     body.id
                 )));
             };
-            chosen.push(Chosen { id: particles.id[k], place: k, x, size });
+            chosen.push(Chosen { id: particles.id[k], index: k, x, size });
         }
         if chosen.is_empty() {
             return Err(Error::invalid(format!(
@@ -89,7 +91,7 @@ impl Traction {
             ids: chosen.iter().map(|c| c.id).collect(),
             areas: chosen.iter().map(|c| edge(c) * radius(c)).collect(),
             edges: chosen.iter().map(edge).collect(),
-            places: chosen.iter().map(|c| c.place).collect(),
+            places: chosen.iter().map(|c| c.index).collect(),
             wanted,
         })
     }
@@ -124,7 +126,7 @@ impl Traction {
 
 struct Chosen<const D: usize> {
     id: i64,
-    place: usize,
+    index: usize,
     x: [f64; D],
     size: [f64; 3],
 }
@@ -132,8 +134,8 @@ struct Chosen<const D: usize> {
 /// No particle of a surface.
 const NONE: u32 = u32::MAX;
 
-/// The particles that carry a load. They are known by their ids; where they stand in storage is remembered and looked up again, in one
-/// pass over the body, when one has moved.
+/// The particles that carry a load. They are known by their ids; their indices in storage order are
+/// stored, and found again in one pass over the body when a particle has moved.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Ids, ascending.
@@ -142,22 +144,23 @@ pub struct Surface {
     pub areas: Vec<f64>,
     /// Product of its edges in the surface, 1 m thick in two dimensions [m²].
     pub edges: Vec<f64>,
-    /// Places in storage, in the order of the ids.
+    /// Indices in storage order, in the order of the ids.
     pub places: Vec<usize>,
     /// For each id of the body its number in the surface.
     wanted: Vec<u32>,
 }
 
 impl Surface {
-    /// Finds the places of the particles anew if one has moved; `ids` are those of the body, in storage order.
+    /// Finds the indices of the particles anew if one has moved; `ids` are those of the body, in
+    /// storage order.
     pub fn look_up(&mut self, ids: &[i64]) {
-        if self.places.iter().zip(&self.ids).all(|(place, id)| ids[*place] == *id) {
+        if self.places.iter().zip(&self.ids).all(|(index, id)| ids[*index] == *id) {
             return;
         }
-        for (place, id) in ids.iter().enumerate() {
+        for (index, id) in ids.iter().enumerate() {
             let n = self.wanted[*id as usize];
             if n != NONE {
-                self.places[n as usize] = place;
+                self.places[n as usize] = index;
             }
         }
     }

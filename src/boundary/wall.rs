@@ -1,9 +1,11 @@
 //! Planar walls normal to an axis.
 //!
-//! A wall acts on every node whose signed distance to it (positive on the side of the material) is at most its reach: the
-//! radius of the shape function's support less one cell, 0 for linear and h/2 for quadratic shapes. With the wall on a node plane
-//! (linear) or a half-cell plane (quadratic) no free node's function then reaches the wall; elsewhere the wall acts up
-//! to one cell late. All nodes behind it are held too; several walls act in the order in which they were added.
+//! A wall acts on every node whose signed distance to it (positive on the side of the material) is
+//! at most its reach: the radius of the shape function's support less one cell, 0 for linear and
+//! h/2 for quadratic shapes. With the wall on a node plane (linear) or a half-cell plane
+//! (quadratic) no free node's function then reaches the wall; elsewhere the wall acts up to one
+//! cell late. All nodes behind it are held too; several walls act in the order in which they were
+//! added.
 
 use std::ops::Range;
 
@@ -13,7 +15,8 @@ use crate::background::{EDGE, Key, Space, block_nodes};
 use crate::choice::choices;
 use crate::error::{Error, Result};
 
-/// Nodes this close to the reach of a condition, in cells, still count as reached: the round-off of positions.
+/// Nodes this close to the reach of a condition, in cells, still count as reached: the round-off of
+/// positions.
 pub const ROUND_OFF: f64 = 1e-9;
 
 choices! {

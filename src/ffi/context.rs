@@ -53,7 +53,7 @@ pub struct lahar_plugin_info {
     pub author: *const c_char,
     /// Licence, an SPDX expression.
     pub licence: *const c_char,
-    /// Where to find it; may be empty.
+    /// Its address in the web; may be empty.
     pub url: *const c_char,
     /// The file that was loaded; for a registered plugin its id in brackets.
     pub path: *const c_char,

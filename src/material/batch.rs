@@ -1,10 +1,11 @@
-//! What a material sees: a run of points as three-dimensional tensors.
+//! The view that a material has of points: three-dimensional tensors, component by component.
 
-/// Safe picture of `lahar_stress_batch`: one call for `n` points.
+/// Safe counterpart of `lahar_stress_batch`: one call for `n` points.
 ///
-/// Component `c` of point `k` stands at `array[c * stride + k]`, so that an array of `C` components has `C * stride`
-/// elements; `stride` is a multiple of 8 and at least `n`, and bases are 64-byte aligned. An empty slice stands for
-/// an array that was not asked for. Symmetric tensors are xx, yy, zz, xy, yz, zx, gradients row-major, tension positive.
+/// Component `c` of point `k` stands at `array[c * stride + k]`, so that an array of `C` components
+/// has `C * stride` elements; `stride` is a multiple of 8 and at least `n`, and bases are 64-byte
+/// aligned. An empty slice stands for an array that was not asked for. Symmetric tensors are xx,
+/// yy, zz, xy, yz, zx, gradients row-major, tension positive.
 pub struct StressBatch<'a> {
     /// Number of points.
     pub n: usize,

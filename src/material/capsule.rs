@@ -1,7 +1,8 @@
-//! Failure capsules: the call of a model at one point, written to a small JSON file and run again alone.
+//! Failure capsules: the call of a model at one point, written to a small JSON file and run again
+//! alone.
 //!
-//! Numbers keep all their digits; those that are not finite are the texts `NaN`, `inf` and `-inf`. Points, parameters, inputs and state
-//! variables go by their names.
+//! Numbers are written with all their digits; those that are not finite are the texts `NaN`, `inf`
+//! and `-inf`. Points, parameters, inputs and state variables go by their names.
 
 use super::{Kinematics, Material, Model, StressBatch};
 use crate::context::Context;
@@ -78,7 +79,8 @@ impl<T> Named<T> {
         self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value)
     }
 
-    /// The values of all `names`, in their order. Errors: a name that is not among them, one that is missing.
+    /// The values of all `names`, in their order. Errors: a name that is not among them, one that
+    /// is missing.
     fn values<'a>(
         &self,
         what: &str,
@@ -159,7 +161,8 @@ pub struct Capsule {
     pub dt: Number,
     /// Every parameter.
     pub parameters: Named<Number>,
-    /// What the model takes: `strain_increment` [-] (6), `velocity_gradient` [1/s] (9) or `deformation_gradient` [-] (9).
+    /// What the model takes: `strain_increment` [-] (6), `velocity_gradient` [1/s] (9) or
+    /// `deformation_gradient` [-] (9).
     pub kinematics: Named<Vec<Number>>,
     /// The inputs that the model wants.
     pub inputs: Named<Number>,
@@ -171,7 +174,8 @@ pub struct Capsule {
     pub end: End,
 }
 
-/// What a model answers at a point. At a point that failed, stress, state and outputs are what happened to be left there.
+/// What a model answers at a point. At a point that failed, stress, state and outputs are what
+/// happened to be left there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// One of `LAHAR_POINT_*`.
@@ -180,7 +184,8 @@ pub struct End {
     pub stress1: Vec<Number>,
     /// Components of each state variable at the end.
     pub state1: Named<Vec<Number>>,
-    /// The declared outputs: `wave_speed` [m/s], `diffusivity` [m^2/s], `energy` [J/m^3], `dt_factor` [-].
+    /// The declared outputs: `wave_speed` [m/s], `diffusivity` [m^2/s], `energy` [J/m^3],
+    /// `dt_factor` [-].
     pub outputs: Named<Number>,
 }
 
@@ -209,7 +214,7 @@ impl End {
     }
 }
 
-/// What came of a point that was run again.
+/// The result of a point that was run again.
 #[derive(Clone, Debug)]
 pub struct Replay {
     /// The answer.
@@ -267,8 +272,9 @@ impl Capsule {
         }
     }
 
-    /// Writes the capsule into a folder as `lahar-capsule-<model>-<body>-<particle>-<step>.json`, or with `-2`, `-3`, ... before the
-    /// ending where there are such files, and gives its path. Error: [`Status::File`].
+    /// Writes the capsule into a folder as `lahar-capsule-<model>-<body>-<particle>-<step>.json`,
+    /// or with `-2`, `-3`, ... before the ending where there are such files, and gives its path.
+    /// Error: [`Status::File`].
     pub fn write(&self, folder: &Path) -> Result<PathBuf> {
         let Self { model, body, particle, step, .. } = self;
         let stem = format!("lahar-capsule-{model}-{body}-{particle}-{step}");
@@ -294,8 +300,8 @@ impl Capsule {
 
     /// Reads a capsule.
     ///
-    /// Errors: [`Status::File`] if there is none, [`Status::InvalidArgument`] if it is not one or not whole, [`Status::UnknownName`] for a
-    /// key that a capsule does not have.
+    /// Errors: [`Status::File`] if there is none, [`Status::InvalidArgument`] if it is not one or
+    /// not whole, [`Status::UnknownName`] for a key that a capsule does not have.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|why| {
             let text = format!("the failure capsule {} can not be read: {why}", path.display());
@@ -324,8 +330,9 @@ impl Capsule {
 
     /// Runs the point again, alone, with the model of this name in the context.
     ///
-    /// Errors: [`Status::UnknownName`] (model, parameter, input or state variable, with the closest name), [`Status::MissingParameter`] (one
-    /// is missing), [`Status::InvalidArgument`] (a wrong number of components), and those of [`Material::new`] and [`Material::update`].
+    /// Errors: [`Status::UnknownName`] (model, parameter, input or state variable, with the closest
+    /// name), [`Status::MissingParameter`] (one is missing), [`Status::InvalidArgument`] (a wrong
+    /// number of components), and those of [`Material::new`] and [`Material::update`].
     pub fn replay(&self, context: &Context) -> Result<Replay> {
         let model = context.model(&self.model).map_err(|mut error| {
             let plugin =

@@ -1,7 +1,7 @@
 //! What plugins and models say about themselves, checked and copied out of their tables.
 //!
-//! Texts come as `&str` for Rust and, with the suffix `_c`, as the C string that the C interface hands out. Both live
-//! as long as the process, as the plugins do.
+//! Texts come as `&str` for Rust and, with the suffix `_c`, as the C string that the C interface
+//! hands out. Both live as long as the process, as the plugins do.
 
 use crate::plugin::Functions;
 use lahar_plugin_abi as abi;
@@ -26,7 +26,7 @@ pub struct Plugin {
     pub licence: &'static str,
     /// The same.
     pub licence_c: &'static CStr,
-    /// Where to find it; may be empty.
+    /// Its address in the web; may be empty.
     pub url: &'static str,
     /// The same.
     pub url_c: &'static CStr,
@@ -92,7 +92,7 @@ impl Model {
         self.functions.offers_stored_energy()
     }
 
-    /// Place of an input among those that the model wants.
+    /// Index of an input among those that the model wants.
     pub fn input(&self, input: Input) -> Option<usize> {
         self.inputs.iter().position(|i| *i == input)
     }
@@ -102,13 +102,15 @@ impl Model {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Kinematics {
-    /// The strain increment dt sym L; the engine turns the start stress by exp(W dt), W = skw L (Jaumann).
+    /// The strain increment dt sym L; the engine turns the start stress by exp(W dt), W = skw L
+    /// (Jaumann).
     StrainIncrement = abi::LAHAR_KINEMATICS_STRAIN_INCREMENT,
     /// The velocity gradient; the start stress arrives unrotated.
     VelocityGradient = abi::LAHAR_KINEMATICS_VELOCITY_GRADIENT,
     /// The deformation gradient at the end of the step; the start stress arrives unrotated.
     DeformationGradient = abi::LAHAR_KINEMATICS_DEFORMATION_GRADIENT,
-    /// The strain increment dt sym L; the engine turns the start stress by the increment of the rotation R of F = R U.
+    /// The strain increment dt sym L; the engine turns the start stress by the increment of the
+    /// rotation R of F = R U.
     GreenNaghdi = abi::LAHAR_KINEMATICS_GREEN_NAGHDI,
 }
 

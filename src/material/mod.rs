@@ -1,4 +1,5 @@
-//! What the engine knows of constitutive models: descriptions, materials (a model with its parameter values), batches.
+//! Constitutive models in the engine: descriptions, materials (a model with its parameter values),
+//! batches.
 
 mod batch;
 mod capsule;
@@ -18,7 +19,7 @@ use crate::log::{LogLevel, LogQueue, LogScope};
 use crate::plugin::Instance;
 use std::sync::Arc;
 
-/// A model with parameter values. Shared by bodies and threads; keeps nothing of a body.
+/// A model with parameter values. Shared by bodies and threads; it stores nothing of a body.
 pub struct Material {
     values: Vec<f64>,
     instance: Instance,
@@ -26,11 +27,13 @@ pub struct Material {
 }
 
 impl Material {
-    /// A material from a model's name and named values; parameters that are not named take their defaults.
+    /// A material from a model's name and named values; parameters that are not named take their
+    /// defaults.
     ///
-    /// Errors: [`Status::UnknownName`] (model or parameter, with the closest name), [`Status::InvalidArgument`] (given
-    /// twice, not finite), [`Status::OutOfBounds`] (hard bounds, not one of the choices, or values that the model says
-    /// do not go together), [`Status::MissingParameter`]. A value outside the advised bounds is logged as a warning.
+    /// Errors: [`Status::UnknownName`] (model or parameter, with the closest name),
+    /// [`Status::InvalidArgument`] (given twice, not finite), [`Status::OutOfBounds`] (hard bounds,
+    /// not one of the choices, or values that the model says do not go together),
+    /// [`Status::MissingParameter`]. A value outside the advised bounds is logged as a warning.
     pub fn new(context: &Context, model: &str, named: &[(&str, f64)]) -> Result<Arc<Material>> {
         let model = context.model(model)?;
         let values = collect_values(context, model, named)?;
@@ -51,28 +54,31 @@ impl Material {
 
     /// One step of all points of the batch: end stress, end state, outputs.
     ///
-    /// Errors: [`Status::MaterialFailed`] with the plugin's text; [`Status::InvalidArgument`] if an array that the
-    /// model needs is missing or too short. Points that fail alone are told in `status`.
+    /// Errors: [`Status::MaterialFailed`] with the plugin's text; [`Status::InvalidArgument`] if an
+    /// array that the model needs is missing or too short. Points that fail alone are reported in
+    /// `status`.
     pub fn update(&self, batch: &mut StressBatch<'_>) -> Result<()> {
         let _scope = LogScope::enter_if_none(&self.log);
         self.instance.update(batch)
     }
 
-    /// Wave speed, and diffusivity if the model gives it, from start stress, start state and inputs. Errors as above.
+    /// Wave speed, and diffusivity if the model gives it, from start stress, start state and
+    /// inputs. Errors as above.
     pub fn wave_speed(&self, batch: &mut StressBatch<'_>) -> Result<()> {
         let _scope = LogScope::enter_if_none(&self.log);
         self.instance.wave_speed(batch)
     }
 
-    /// dσ1/dΔε [Pa] of the step that [`Material::update`] makes of the same batch: component `6 i + j` of point `k` at
-    /// `out[(6 * i + j) * stride + k]`. None if the model does not offer it. Errors as above.
+    /// dσ1/dΔε [Pa] of the step that [`Material::update`] makes of the same batch: component `6 i +
+    /// j` of point `k` at `out[(6 * i + j) * stride + k]`. None if the model does not offer it.
+    /// Errors as above.
     pub fn tangent(&self, batch: &mut StressBatch<'_>, out: &mut [f64]) -> Option<Result<()>> {
         let _scope = LogScope::enter_if_none(&self.log);
         self.instance.tangent(batch, out)
     }
 
-    /// Energy per volume [J/m^3] that can be had back, one value per point, from the start of the batch. None if the model does not offer
-    /// it. Errors as above.
+    /// Energy per volume [J/m^3] that can be had back, one value per point, from the start of the
+    /// batch. None if the model does not offer it. Errors as above.
     pub fn stored_energy(
         &self,
         batch: &mut StressBatch<'_>,
@@ -82,8 +88,9 @@ impl Material {
         self.instance.stored_energy(batch, out)
     }
 
-    /// Lets the model derive the first state from start stress and inputs into `state1`, which holds the initial values.
-    /// Nothing happens if the model has no such function. Errors as above.
+    /// Makes the model derive the first state from start stress and inputs into `state1`, which
+    /// holds the initial values. Nothing happens if the model has no such function. Errors as
+    /// above.
     pub fn init_state(&self, batch: &mut StressBatch<'_>) -> Result<()> {
         let _scope = LogScope::enter_if_none(&self.log);
         self.instance.init_state(batch)

@@ -11,7 +11,8 @@ use crate::memory::{Aligned, stride_of};
 /// Points for which a thread makes room at once.
 const POINTS: usize = 512;
 
-/// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does not ask for are empty.
+/// Columns of a chunk; component `c` of point `k` at `[c * stride + k]`. Those that the model does
+/// not ask for are empty.
 pub struct Scratch<'a> {
     /// Number of points.
     pub n: usize,
@@ -21,7 +22,8 @@ pub struct Scratch<'a> {
     pub velocity_gradient: &'a mut [f64],
     /// Δε [–], 6 components.
     pub strain_increment: &'a mut [f64],
-    /// F at the end of the step [–], 9 components, if the particles carry it or the model asks for it.
+    /// F at the end of the step [–], 9 components, if the particles carry it or the model asks for
+    /// it.
     pub deformation_gradient: &'a mut [f64],
     /// Edge lengths of the domains at the end [m], if the particles carry them.
     pub size1: &'a mut [f64],
@@ -66,8 +68,8 @@ impl Scratch<'_> {
     /// Values of an input; none if the model does not want it.
     #[inline(always)]
     pub fn input(&mut self, input: Input) -> Option<&mut [f64]> {
-        let place = self.model.input(input)?;
-        Some(&mut self.inputs[place * self.stride..][..self.stride])
+        let index = self.model.input(input)?;
+        Some(&mut self.inputs[index * self.stride..][..self.stride])
     }
 
     /// The start stress of point k.
@@ -106,7 +108,7 @@ impl Scratch<'_> {
     }
 }
 
-/// Room for the scratch of a chunk and a tile, one per thread. It grows once and is kept.
+/// Room for the scratch of a chunk and a tile, one per thread. It grows once and stays allocated.
 #[derive(Default)]
 pub struct Buffers {
     points: Points,

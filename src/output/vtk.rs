@@ -14,8 +14,9 @@ use crate::world::World;
 /// Compression level: fast.
 const LEVEL: u32 = 1;
 
-/// Writes the particles of all bodies with every field of the registry, the id of the body and the id of the particle. Vectors get
-/// three components; a state variable that a body does not have is not a number there. A file of that name is replaced as a whole.
+/// Writes the particles of all bodies with every field of the registry, the id of the body and the
+/// id of the particle. Vectors get three components; of a state variable that a body does not have
+/// the values are NaN. A file of that name is replaced as a whole.
 pub fn write(world: &World, path: &Path) -> Result<()> {
     let failed = |what: String| {
         let path = path.display();
@@ -32,7 +33,7 @@ pub fn write(world: &World, path: &Path) -> Result<()> {
         .map_err(|error| failed(error.to_string()))?;
     let mut bytes = Vec::new();
     file.write(&mut bytes).map_err(|error| failed(error.to_string()))?;
-    // written aside, so that an old file stays whole if the disk is full
+    // written under another name first, so that an old file stays whole if the disk is full
     let aside = path.with_extension("vtp.part");
     let written = std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path));
     written.map_err(|error| {

@@ -1,4 +1,5 @@
-//! Calls the functions of a model: builds the C batch from the safe one and turns return values into errors.
+//! Calls the functions of a model: builds the C batch from the safe one and turns return values
+//! into errors.
 
 use super::checked::{self, checks};
 use super::exclusive;
@@ -23,7 +24,7 @@ type Check =
 
 /// The functions of a model, checked by the handshake.
 pub(crate) struct Functions {
-    /// The table that the functions stand in; `create` and `check` are given it.
+    /// The table that holds the functions; `create` and `check` are given it.
     pub(super) desc: &'static lahar_model_desc,
     pub(super) create:
         unsafe extern "C" fn(*const lahar_model_desc, *const f64, i64, *mut *mut c_void) -> i32,
@@ -39,7 +40,8 @@ pub(crate) struct Functions {
 }
 
 impl Functions {
-    /// Keeps other calls of the library's models away, if they are not thread-safe; after [`exclusive`] where both are held.
+    /// Excludes other calls of the library's models if they are not thread-safe; locked after
+    /// [`exclusive`] where both are held.
     fn alone(&self) -> Option<MutexGuard<'static, ()>> {
         self.serial.map(|m| m.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -92,8 +94,8 @@ pub(crate) struct Instance {
     checked: bool,
 }
 
-// SAFETY: the ABI lets any thread call an instance; `serial` keeps threads apart where the model asks for it, and
-// the lock of exclusive functions does for creation and destruction.
+// SAFETY: the ABI lets any thread call an instance; `serial` excludes other threads where the model
+// asks for it, and the lock of exclusive functions excludes them from creation and destruction.
 unsafe impl Send for Instance {}
 // SAFETY: as above.
 unsafe impl Sync for Instance {}
@@ -126,7 +128,7 @@ impl Instance {
             }
         }
         let mut pointer = ptr::null_mut();
-        // SAFETY: `values` has `count` values and `pointer` is a place for one pointer.
+        // SAFETY: `values` has `count` values and `pointer` can hold one pointer.
         let code =
             unsafe { (functions.create)(functions.desc, values.as_ptr(), count, &mut pointer) };
         if code != LAHAR_PLUGIN_OK {
@@ -240,8 +242,8 @@ impl Instance {
             // SAFETY: as below; `own` has the components that the extension writes.
             function.map_or(LAHAR_PLUGIN_OK, |f| unsafe { f(self.pointer, &raw, own) })
         };
-        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model may touch, the
-        // arrays are borrowed for the call, and mutable borrows do not alias.
+        // SAFETY: the instance is of this model; `raw_batch` has checked every array that the model
+        // may touch, the arrays are borrowed for the call, and mutable borrows do not alias.
         let plain = |function: Call| unsafe { function(self.pointer, &raw) };
         let _one_at_a_time = self.model.functions.alone();
         take_error();
@@ -296,7 +298,8 @@ impl Instance {
         Ok(pointers)
     }
 
-    /// The C batch: arrays that the model did not ask for become NULL, the lengths of the others are checked.
+    /// The C batch: arrays that the model did not ask for become NULL, the lengths of the others
+    /// are checked.
     fn raw_batch(
         &self,
         batch: &mut StressBatch<'_>,

@@ -1,11 +1,13 @@
-//! Checked mode, `LAHAR_CHECK_PLUGINS=1`: every call of a model runs on guarded copies, and a breach of the contract is an error that
-//! says who, which function, which point and what to do.
+//! Checked mode, `LAHAR_CHECK_PLUGINS=1`: every call of a model runs on guarded copies, and a
+//! breach of the contract is an error that names the model, the function and the point, and says
+//! what to do.
 //!
-//! The copies have guard words before, behind and between the components. What the model must write holds a mark before the call: a
-//! signalling NaN, which arithmetic would turn into a quiet one. After the call the guards, the start of the step and the
-//! floating-point environment must be what they were, and every output written and in its range. A model that declares itself
-//! deterministic is called again with the same points, one that is pointwise too with the points in another order and one by one;
-//! the results must be equal bit by bit.
+//! The copies have guard words before, behind and between the components. What the model must write
+//! holds a mark before the call: a signalling NaN, which arithmetic would turn into a quiet one.
+//! After the call the guards, the start of the step and the floating-point environment must be what
+//! they were, and every output written and in its range. A model that declares itself deterministic
+//! is called again with the same points, one that is pointwise too with the points in another order
+//! and one by one; the results must be equal bit by bit.
 
 use super::adapter::{Instance, Verb};
 use crate::error::{Error, Result, Status};
@@ -15,7 +17,8 @@ use crate::simd::{LANES, environment};
 use lahar_plugin_abi::*;
 use std::sync::OnceLock;
 
-/// Whether the environment asks for checked mode; it is read once. Error: [`Status::InvalidArgument`].
+/// Whether the environment asks for checked mode; it is read once. Error:
+/// [`Status::InvalidArgument`].
 pub(crate) fn checks() -> Result<bool> {
     static CHECKS: OnceLock<std::result::Result<bool, String>> = OnceLock::new();
     let checks = CHECKS.get_or_init(|| match std::env::var_os("LAHAR_CHECK_PLUGINS") {
@@ -54,7 +57,8 @@ struct Column {
 }
 
 impl Column {
-    /// The points `order` of an array with this many components. An array that is too short was not asked for and stays away.
+    /// The points `order` of an array with this many components. An array that is too short was not
+    /// asked for and stays away.
     fn new(
         name: &'static str,
         (source, from): (&[f64], usize),
@@ -117,9 +121,11 @@ struct Copies<'a> {
     instance: &'a Instance,
     verb: Verb,
     n: usize,
-    /// Strain increment, velocity gradient, deformation gradient, start stress, start state, inputs.
+    /// Strain increment, velocity gradient, deformation gradient, start stress, start state,
+    /// inputs.
     read: [Column; 6],
-    /// End stress, end state, wave speed, diffusivity, energy, factor on the time step, the extension's own.
+    /// End stress, end state, wave speed, diffusivity, energy, factor on the time step, the
+    /// extension's own.
     written: [Column; 7],
     status: Vec<i32>,
 }
@@ -140,7 +146,7 @@ fn outputs(verb: Verb) -> &'static [usize] {
     }
 }
 
-/// Calls the model on copies, checks what it did, and hands the results on.
+/// Calls the model on copies, checks what it did, and passes the results on.
 pub(super) fn call(
     instance: &Instance,
     verb: Verb,
@@ -344,8 +350,8 @@ impl<'a> Copies<'a> {
         Ok(())
     }
 
-    /// Wave speeds and factors of a point that did not fail. What is not finite of a start that is not, or with a stress
-    /// that is not, is for the step to tell.
+    /// Wave speeds and factors of a point that did not fail. If the start or the end stress is not
+    /// finite, they need not be: the step reports that.
     fn check_ranges(&self, k: usize) -> Result<()> {
         let finite = |column: &Column| (0..column.components).all(|c| column.at(c, k).is_finite());
         let [speed, factor] = [&self.written[WAVE_SPEED], &self.written[DT_FACTOR]];
@@ -406,10 +412,10 @@ impl<'a> Copies<'a> {
         Ok(())
     }
 
-    /// Copies the results to where the caller wants them.
+    /// Copies the results to the caller's arrays.
     fn hand_on(&self, batch: &mut StressBatch<'_>, own: &mut [f64]) {
         let (n, stride) = (self.n, batch.stride);
-        let places = [
+        let targets = [
             &mut *batch.stress1,
             &mut *batch.state1,
             &mut *batch.wave_speed,
@@ -418,12 +424,12 @@ impl<'a> Copies<'a> {
             &mut *batch.dt_factor,
             own,
         ];
-        for (i, place) in places.into_iter().enumerate() {
+        for (i, target) in targets.into_iter().enumerate() {
             let column = &self.written[i];
             if outputs(self.verb).contains(&i) {
                 for c in 0..column.components {
                     let from = &column.slice()[c * column.stride..][..n];
-                    place[c * stride..][..n].copy_from_slice(from);
+                    target[c * stride..][..n].copy_from_slice(from);
                 }
             }
         }

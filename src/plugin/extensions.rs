@@ -1,6 +1,7 @@
-//! The extensions of a model that the engine knows: their tables, checked when the plugin is loaded.
+//! The extensions of a model that the engine knows: their tables, checked when the plugin is
+//! loaded.
 
-use super::handshake::Place;
+use super::handshake::Location;
 use crate::error::Result;
 use crate::material::Transfer;
 use lahar_plugin_abi::*;
@@ -17,23 +18,23 @@ impl Extensions {
     /// # Safety
     ///
     /// As for [`read_plugin`](super::handshake::read_plugin).
-    pub(super) unsafe fn read(desc: &lahar_model_desc, place: &Place<'_>) -> Result<Self> {
-        // SAFETY: told by the caller; a table of an id is of the type that the ABI names.
+    pub(super) unsafe fn read(desc: &lahar_model_desc, location: &Location<'_>) -> Result<Self> {
+        // SAFETY: by contract of the caller; a table of an id is of the type that the ABI names.
         let (tangent, energy, transfer) = unsafe {
             (
-                table_of::<lahar_tangent_extension>(desc, c"lahar.tangent", place)?,
-                table_of::<lahar_energy_extension>(desc, c"lahar.energy", place)?,
-                table_of::<lahar_transfer_extension>(desc, c"lahar.transfer", place)?,
+                table_of::<lahar_tangent_extension>(desc, c"lahar.tangent", location)?,
+                table_of::<lahar_energy_extension>(desc, c"lahar.energy", location)?,
+                table_of::<lahar_transfer_extension>(desc, c"lahar.transfer", location)?,
             )
         };
-        place.ensure(tangent.is_none_or(|t| t.tangent.is_some()), || {
+        location.ensure(tangent.is_none_or(|t| t.tangent.is_some()), || {
             "expected a function in `lahar.tangent`, got NULL".into()
         })?;
-        place.ensure(energy.is_none_or(|t| t.stored.is_some()), || {
+        location.ensure(energy.is_none_or(|t| t.stored.is_some()), || {
             "expected a function in `lahar.energy`, got NULL".into()
         })?;
         let declared = desc.capabilities & LAHAR_CAPABILITY_TANGENT != 0;
-        place.ensure(declared == tangent.is_some(), || {
+        location.ensure(declared == tangent.is_some(), || {
             let (says, gives) = if declared { ("", "not ") } else { ("not ", "") };
             format!(
                 "LAHAR_CAPABILITY_TANGENT is {says}declared, but `lahar.tangent` is {gives}offered"
@@ -42,9 +43,10 @@ impl Extensions {
         let transfer = match transfer {
             None => Vec::new(),
             Some(t) => {
-                // SAFETY: told by the caller.
-                let rules =
-                    unsafe { place.entries("transfer rules", t.rules, t.count, size_of::<i32>()) }?;
+                // SAFETY: by contract of the caller.
+                let rules = unsafe {
+                    location.entries("transfer rules", t.rules, t.count, size_of::<i32>())
+                }?;
                 rules.into_iter().copied().collect()
             }
         };
@@ -52,16 +54,16 @@ impl Extensions {
     }
 
     /// One rule per state variable; the mean if the model gives none.
-    pub(super) fn rules(&self, states: usize, place: &Place<'_>) -> Result<Vec<Transfer>> {
+    pub(super) fn rules(&self, states: usize, location: &Location<'_>) -> Result<Vec<Transfer>> {
         let given = self.transfer.len();
-        place.ensure(given == 0 || given == states, || {
+        location.ensure(given == 0 || given == states, || {
             format!("expected {states} rules in `lahar.transfer`, got {given}")
         })?;
         let rule = |rule: &i32| match *rule {
             LAHAR_TRANSFER_MEAN => Ok(Transfer::Mean),
             LAHAR_TRANSFER_MAX => Ok(Transfer::Max),
             LAHAR_TRANSFER_NEVER => Ok(Transfer::Never),
-            other => Err(place.error(format!("expected transfer rules 0 to 2, got {other}"))),
+            other => Err(location.error(format!("expected transfer rules 0 to 2, got {other}"))),
         };
         if given == 0 {
             return Ok(vec![Transfer::Mean; states]);
@@ -78,7 +80,7 @@ impl Extensions {
 unsafe fn table_of<T>(
     desc: &lahar_model_desc,
     id: &CStr,
-    place: &Place<'_>,
+    location: &Location<'_>,
 ) -> Result<Option<&'static T>> {
     let Some(get_extension) = desc.get_extension else { return Ok(None) };
     // SAFETY: the id ends with a NUL; loading is exclusive.
@@ -86,6 +88,6 @@ unsafe fn table_of<T>(
     if table.is_null() {
         return Ok(None);
     }
-    // SAFETY: told by the caller.
-    unsafe { place.inside(format!("{}, extension {id:?}", place.at)).table(table) }.map(Some)
+    // SAFETY: by contract of the caller.
+    unsafe { location.inside(format!("{}, extension {id:?}", location.at)).table(table) }.map(Some)
 }

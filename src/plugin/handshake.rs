@@ -1,7 +1,7 @@
 //! Checks the tables of a plugin once, when it is loaded, and copies them into safe descriptions.
 //!
-//! Nothing of a table is used before its size is known to reach that far. An error names the plugin, the place in its
-//! tables, what was expected and what was found.
+//! No member of a table is used before the table's size is known to contain it. An error names the
+//! plugin, the location in its tables, what was expected and what was found.
 
 use super::adapter::Functions;
 use super::extensions::Extensions;
@@ -43,23 +43,23 @@ const KNOWN_OUTPUTS: u64 = LAHAR_OUTPUT_WAVE_SPEED
     | LAHAR_OUTPUT_DT_FACTOR
     | LAHAR_OUTPUT_STATUS;
 
-/// A text of a plugin, twice.
+/// A text of a plugin, as Rust and as C string.
 struct Text {
     text: &'static str,
     c: &'static CStr,
 }
 
-/// Where in the tables we are; makes errors.
-pub(super) struct Place<'a> {
+/// Position in the tables of a plugin; makes errors.
+pub(super) struct Location<'a> {
     path: &'a Path,
     pub(super) at: String,
     /// Minor version that the plugin was made for; 0 before it is known.
     minor: u32,
 }
 
-impl Place<'_> {
-    pub(super) fn inside(&self, at: String) -> Place<'_> {
-        Place { path: self.path, at, minor: self.minor }
+impl Location<'_> {
+    pub(super) fn inside(&self, at: String) -> Location<'_> {
+        Location { path: self.path, at, minor: self.minor }
     }
 
     pub(super) fn error(&self, what: impl AsRef<str>) -> Error {
@@ -81,19 +81,20 @@ impl Place<'_> {
     /// `text` is NULL or a string that ends with a NUL and lives as long as the process.
     unsafe fn text(&self, field: &str, text: *const c_char) -> Result<Text> {
         self.ensure(!text.is_null(), || format!("expected a text for `{field}`, got NULL"))?;
-        // SAFETY: not NULL, the rest is told by the caller.
+        // SAFETY: not NULL, the rest by contract of the caller.
         let c = unsafe { CStr::from_ptr::<'static>(text) };
         let text = c.to_str().map_err(|_| self.error(format!("`{field}` is not UTF-8")))?;
         Ok(Text { text, c })
     }
 
-    /// A text of ASCII letters, digits, underscores and the characters of `more` that begins with a letter.
+    /// A text of ASCII letters, digits, underscores and the characters of `more` that begins with a
+    /// letter.
     ///
     /// # Safety
     ///
-    /// As for [`Place::text`].
+    /// As for [`Location::text`].
     unsafe fn identifier(&self, field: &str, text: *const c_char, more: &str) -> Result<Text> {
-        // SAFETY: told by the caller.
+        // SAFETY: by contract of the caller.
         let text = unsafe { self.text(field, text) }?;
         let letters = |c: char| c.is_ascii_alphanumeric() || c == '_' || more.contains(c);
         let sane = text.text.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -119,7 +120,8 @@ impl Place<'_> {
     ///
     /// # Safety
     ///
-    /// `table` is NULL or points to a table as long as its first member says, valid for the life of the process.
+    /// `table` is NULL or points to a table as long as its first member says, valid for the life of
+    /// the process.
     pub(super) unsafe fn table<T>(&self, table: *const T) -> Result<&'static T> {
         self.ensure(!table.is_null(), || "expected a table, got NULL".into())?;
         self.ensure(table.is_aligned(), || "the table is not aligned".into())?;
@@ -131,11 +133,12 @@ impl Place<'_> {
                 size_of::<T>()
             )
         })?;
-        // SAFETY: long enough, the rest is told by the caller.
+        // SAFETY: long enough, the rest by contract of the caller.
         Ok(unsafe { &*table })
     }
 
-    /// The entries of an array of `count` entries of `size` bytes each, of which the beginning is a `T`.
+    /// The entries of an array of `count` entries of `size` bytes each, of which the beginning is a
+    /// `T`.
     ///
     /// # Safety
     ///
@@ -158,21 +161,22 @@ impl Place<'_> {
         self.ensure(size >= size_of::<T>(), || {
             format!("expected {what} of at least {} bytes each, got {size}", size_of::<T>())
         })?;
-        // SAFETY: entry i begins i * size bytes behind the base, inside the array; the rest is told by the caller.
+        // SAFETY: entry i begins i * size bytes behind the base, inside the array; the rest by
+        // contract of the caller.
         Ok((0..count as usize).map(|i| unsafe { &*base.byte_add(i * size) }).collect())
     }
 }
 
-/// Reads everything that a plugin says of itself.
+/// Reads all tables of a plugin.
 ///
 /// # Safety
 ///
-/// `desc` came from the entry of our major or from a host that registers it: it is a table of the ABI whose pointers are NULL or valid for the life of
-/// the process.
+/// `desc` came from the entry of our major or from a host that registers it: it is a table of the
+/// ABI whose pointers are NULL or valid for the life of the process.
 pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) -> Result<Plugin> {
-    let mut place = Place { path, at: "plugin table".into(), minor: 0 };
-    // SAFETY: told by the caller.
-    let desc = unsafe { place.table(desc) }?;
+    let mut location = Location { path, at: "plugin table".into(), minor: 0 };
+    // SAFETY: by contract of the caller.
+    let desc = unsafe { location.table(desc) }?;
     if desc.abi_major != LAHAR_PLUGIN_ABI_MAJOR {
         return Err(Error::new(
             Status::PluginAbi,
@@ -184,25 +188,26 @@ pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) ->
             ),
         ));
     }
-    place.minor = desc.abi_minor;
-    place.ensure(desc.model_count > 0, || "expected at least one model, got none".into())?;
+    location.minor = desc.abi_minor;
+    location.ensure(desc.model_count > 0, || "expected at least one model, got none".into())?;
     // SAFETY: the pointers of the table are NULL or valid for the life of the process.
     let (id, version, author, licence, url, tables) = unsafe {
         (
-            place.identifier("id", desc.id, ".-")?,
-            place.text("version", desc.version)?,
-            place.text("author", desc.author)?,
-            place.text("licence", desc.licence)?,
-            place.text("url", desc.url)?,
-            place.entries("models", desc.models, desc.model_count, size_of::<*const u8>())?,
+            location.identifier("id", desc.id, ".-")?,
+            location.text("version", desc.version)?,
+            location.text("author", desc.author)?,
+            location.text("licence", desc.licence)?,
+            location.text("url", desc.url)?,
+            location.entries("models", desc.models, desc.model_count, size_of::<*const u8>())?,
         )
     };
     let mut models = Vec::new();
     for (i, table) in tables.into_iter().enumerate() {
         // SAFETY: as above.
-        models.push(unsafe { read_model(*table, &place.inside(format!("model {i}")), id.text) }?);
+        models
+            .push(unsafe { read_model(*table, &location.inside(format!("model {i}")), id.text) }?);
     }
-    place.unique("models", models.iter().map(|m| m.name))?;
+    location.unique("models", models.iter().map(|m| m.name))?;
     serialise(&mut models);
     let path_c = CString::new(path.as_os_str().as_encoded_bytes()).unwrap_or_default();
     Ok(Plugin {
@@ -223,7 +228,8 @@ pub(super) unsafe fn read_plugin(desc: *const lahar_plugin_desc, path: &Path) ->
     })
 }
 
-/// The models of a plugin that are not thread-safe share one lock: they may share data in the library.
+/// The models of a plugin that are not thread-safe share one lock: they may share data in the
+/// library.
 fn serialise(models: &mut [Model]) {
     let mut lock: Option<&'static Mutex<()>> = None;
     for model in models {
@@ -238,58 +244,60 @@ fn serialise(models: &mut [Model]) {
 /// As for [`read_plugin`].
 unsafe fn read_model(
     desc: *const lahar_model_desc,
-    place: &Place<'_>,
+    location: &Location<'_>,
     plugin_id: &'static str,
 ) -> Result<Model> {
-    // SAFETY: told by the caller, for this table and for the pointers inside.
+    // SAFETY: by contract of the caller, for this table and its pointers.
     let (desc, name) = unsafe {
-        let desc = place.table(desc)?;
-        (desc, place.identifier("name", desc.name, "")?)
+        let desc = location.table(desc)?;
+        (desc, location.identifier("name", desc.name, "")?)
     };
-    let place = &place.inside(format!("model `{}`", name.text));
-    check_minor(desc, place)?;
+    let location = &location.inside(format!("model `{}`", name.text));
+    check_minor(desc, location)?;
     let kinematics = match desc.kinematics {
         LAHAR_KINEMATICS_STRAIN_INCREMENT => Kinematics::StrainIncrement,
         LAHAR_KINEMATICS_VELOCITY_GRADIENT => Kinematics::VelocityGradient,
         LAHAR_KINEMATICS_DEFORMATION_GRADIENT => Kinematics::DeformationGradient,
         LAHAR_KINEMATICS_GREEN_NAGHDI => Kinematics::GreenNaghdi,
-        other => return Err(place.error(format!("expected kinematics 0, 1, 2 or 3, got {other}"))),
+        other => {
+            return Err(location.error(format!("expected kinematics 0, 1, 2 or 3, got {other}")));
+        }
     };
-    place.ensure(desc.outputs & LAHAR_OUTPUT_WAVE_SPEED != 0, || {
+    location.ensure(desc.outputs & LAHAR_OUTPUT_WAVE_SPEED != 0, || {
         format!(
             "expected outputs with LAHAR_OUTPUT_WAVE_SPEED, which is mandatory, got {:#x}",
             desc.outputs
         )
     })?;
-    place.ensure(desc.outputs & !KNOWN_OUTPUTS == 0, || {
+    location.ensure(desc.outputs & !KNOWN_OUTPUTS == 0, || {
         format!("expected outputs among {KNOWN_OUTPUTS:#x}, got {:#x}", desc.outputs)
     })?;
-    // SAFETY: told by the caller.
+    // SAFETY: by contract of the caller.
     let (summary, reference, parameters, states, inputs) = unsafe {
         (
-            place.text("summary", desc.summary)?,
-            place.text("reference", desc.reference)?,
-            place.entries(
+            location.text("summary", desc.summary)?,
+            location.text("reference", desc.reference)?,
+            location.entries(
                 "parameters",
                 desc.parameters,
                 desc.parameter_count,
                 desc.parameter_size as usize,
             )?,
-            place.entries("states", desc.states, desc.state_count, desc.state_size as usize)?,
-            place.entries("inputs", desc.inputs, desc.input_count, size_of::<i32>())?,
+            location.entries("states", desc.states, desc.state_count, desc.state_size as usize)?,
+            location.entries("inputs", desc.inputs, desc.input_count, size_of::<i32>())?,
         )
     };
-    // SAFETY: told by the caller.
+    // SAFETY: by contract of the caller.
     let parameters: Vec<Parameter> = parameters
         .into_iter()
         .enumerate()
-        .map(|(i, p)| unsafe { read_parameter(p, place, i) })
+        .map(|(i, p)| unsafe { read_parameter(p, location, i) })
         .collect::<Result<_>>()?;
-    // SAFETY: told by the caller.
-    let extensions = unsafe { Extensions::read(desc, place) }?;
-    // SAFETY: told by the caller.
-    let states = unsafe { read_states(&states, &extensions, place) }?;
-    place.unique("parameters", parameters.iter().map(|p| p.key))?;
+    // SAFETY: by contract of the caller.
+    let extensions = unsafe { Extensions::read(desc, location) }?;
+    // SAFETY: by contract of the caller.
+    let states = unsafe { read_states(&states, &extensions, location) }?;
+    location.unique("parameters", parameters.iter().map(|p| p.key))?;
     Ok(Model {
         name: name.text,
         name_c: name.c,
@@ -301,14 +309,14 @@ unsafe fn read_model(
         kinematics,
         parameters,
         states,
-        inputs: read_inputs(&inputs, place)?,
+        inputs: read_inputs(&inputs, location)?,
         outputs: desc.outputs,
         capabilities: desc.capabilities,
-        functions: read_functions(desc, &extensions, place)?,
+        functions: read_functions(desc, &extensions, location)?,
     })
 }
 
-fn check_minor(desc: &lahar_model_desc, place: &Place<'_>) -> Result<()> {
+fn check_minor(desc: &lahar_model_desc, location: &Location<'_>) -> Result<()> {
     if desc.required_minor.saturating_sub(LAHAR_PLUGIN_ABI_MINOR) == 0 {
         return Ok(());
     }
@@ -317,8 +325,8 @@ fn check_minor(desc: &lahar_model_desc, place: &Place<'_>) -> Result<()> {
         format!(
             "plugin {}: {}: it needs at least minor {} of the plugin ABI, this library speaks \
              {LAHAR_PLUGIN_ABI_MAJOR}.{LAHAR_PLUGIN_ABI_MINOR}; use a newer lahar or an older version of the plugin",
-            place.path.display(),
-            place.at,
+            location.path.display(),
+            location.at,
             desc.required_minor
         ),
     ))
@@ -330,18 +338,18 @@ fn check_minor(desc: &lahar_model_desc, place: &Place<'_>) -> Result<()> {
 unsafe fn read_states(
     states: &[&'static lahar_state_desc],
     extensions: &Extensions,
-    place: &Place<'_>,
+    location: &Location<'_>,
 ) -> Result<Vec<StateVariable>> {
-    let rules = extensions.rules(states.len(), place)?;
+    let rules = extensions.rules(states.len(), location)?;
     let mut known = Vec::new();
     for (i, (state, transfer)) in states.iter().zip(rules).enumerate() {
-        // SAFETY: told by the caller.
-        let state = unsafe { read_state(state, place, i) }?;
+        // SAFETY: by contract of the caller.
+        let state = unsafe { read_state(state, location, i) }?;
         known.push(StateVariable { transfer, ..state });
     }
-    place.unique("state variables", known.iter().map(|s| s.key))?;
+    location.unique("state variables", known.iter().map(|s| s.key))?;
     if let Some(state) = known.iter().find(|s| RESERVED.contains(&s.key)) {
-        return Err(place.error(format!(
+        return Err(location.error(format!(
             "its state variable `{}` has the name of a field that every particle may have; choose another",
             state.key
         )));
@@ -352,9 +360,9 @@ unsafe fn read_states(
 fn read_functions(
     desc: &'static lahar_model_desc,
     extensions: &Extensions,
-    place: &Place<'_>,
+    location: &Location<'_>,
 ) -> Result<Functions> {
-    let missing = |name: &str| place.error(format!("expected the function `{name}`, got NULL"));
+    let missing = |name: &str| location.error(format!("expected the function `{name}`, got NULL"));
     Ok(Functions {
         desc,
         create: desc.create.ok_or_else(|| missing("create"))?,
@@ -369,7 +377,7 @@ fn read_functions(
     })
 }
 
-fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>> {
+fn read_inputs(inputs: &[&'static i32], location: &Location<'_>) -> Result<Vec<Input>> {
     let mut known = Vec::new();
     for input in inputs {
         let input = match **input {
@@ -383,12 +391,12 @@ fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>>
             LAHAR_INPUT_POSITION_Z => Input::PositionZ,
             LAHAR_INPUT_PARTICLE_ID => Input::ParticleId,
             other => {
-                return Err(place.error(format!(
+                return Err(location.error(format!(
                     "it wants input {other}; this library offers 1 (density) to 9 (particle id)"
                 )));
             }
         };
-        place.ensure(!known.contains(&input), || format!("it wants {input:?} twice"))?;
+        location.ensure(!known.contains(&input), || format!("it wants {input:?} twice"))?;
         known.push(input);
     }
     Ok(known)
@@ -399,24 +407,24 @@ fn read_inputs(inputs: &[&'static i32], place: &Place<'_>) -> Result<Vec<Input>>
 /// As for [`read_plugin`].
 unsafe fn read_parameter(
     desc: &'static lahar_parameter_desc,
-    place: &Place<'_>,
+    location: &Location<'_>,
     index: usize,
 ) -> Result<Parameter> {
-    let numbered = place.inside(format!("{}, parameter {index}", place.at));
-    // SAFETY: told by the caller.
+    let numbered = location.inside(format!("{}, parameter {index}", location.at));
+    // SAFETY: by contract of the caller.
     let key = unsafe { numbered.identifier("key", desc.key, "") }?;
-    let place = &place.inside(format!("{}, parameter `{}`", place.at, key.text));
-    // SAFETY: told by the caller.
+    let location = &location.inside(format!("{}, parameter `{}`", location.at, key.text));
+    // SAFETY: by contract of the caller.
     let (symbol, unit, description, choices) = unsafe {
         let choices = if desc.kind == LAHAR_PARAMETER_CHOICE {
-            Some(place.text("choices", desc.choices)?)
+            Some(location.text("choices", desc.choices)?)
         } else {
             None
         };
         (
-            place.text("symbol", desc.symbol)?,
-            place.text("unit", desc.unit)?,
-            place.text("description", desc.description)?,
+            location.text("symbol", desc.symbol)?,
+            location.text("unit", desc.unit)?,
+            location.text("description", desc.description)?,
             choices,
         )
     };
@@ -424,9 +432,9 @@ unsafe fn read_parameter(
         LAHAR_PARAMETER_REAL => ParameterKind::Real,
         LAHAR_PARAMETER_INTEGER => ParameterKind::Integer,
         LAHAR_PARAMETER_CHOICE => ParameterKind::Choice,
-        other => return Err(place.error(format!("expected kind 0, 1 or 2, got {other}"))),
+        other => return Err(location.error(format!("expected kind 0, 1 or 2, got {other}"))),
     };
-    place.ensure(matches!(desc.required, 0 | 1), || {
+    location.ensure(matches!(desc.required, 0 | 1), || {
         format!("expected 0 or 1 for `required`, got {}", desc.required)
     })?;
     let parameter = Parameter {
@@ -448,23 +456,23 @@ unsafe fn read_parameter(
         choices: choices.as_ref().map_or(Vec::new(), |c| c.text.split('|').collect()),
         choices_c: choices.map(|c| c.c),
     };
-    check_bounds(&parameter, place)?;
+    check_bounds(&parameter, location)?;
     Ok(parameter)
 }
 
-fn check_bounds(p: &Parameter, place: &Place<'_>) -> Result<()> {
+fn check_bounds(p: &Parameter, location: &Location<'_>) -> Result<()> {
     // Comparisons with NaN are false, so these also refuse bounds that are not numbers.
-    place.ensure(p.hard_min <= p.hard_max, || {
+    location.ensure(p.hard_min <= p.hard_max, || {
         format!("expected hard_min <= hard_max, got {} and {}", p.hard_min, p.hard_max)
     })?;
-    place.ensure(p.advised_min <= p.advised_max, || {
+    location.ensure(p.advised_min <= p.advised_max, || {
         format!("expected advised_min <= advised_max, got {} and {}", p.advised_min, p.advised_max)
     })?;
     if p.kind == ParameterKind::Choice {
-        place.ensure(p.choices.iter().all(|c| !c.is_empty()), || {
+        location.ensure(p.choices.iter().all(|c| !c.is_empty()), || {
             "expected labels separated by `|`, got an empty label".into()
         })?;
-        place.unique("choices", p.choices.iter().copied())?;
+        location.unique("choices", p.choices.iter().copied())?;
     }
     if p.required {
         return Ok(());
@@ -473,7 +481,7 @@ fn check_bounds(p: &Parameter, place: &Place<'_>) -> Result<()> {
     let labelled =
         p.kind != ParameterKind::Choice || (p.default >= 0.0 && p.default < p.choices.len() as f64);
     let inside = p.default.is_finite() && p.default >= p.hard_min && p.default <= p.hard_max;
-    place.ensure(inside && whole && labelled, || {
+    location.ensure(inside && whole && labelled, || {
         format!(
             "its default {} is not a value that it accepts (from {} to {})",
             p.default, p.hard_min, p.hard_max
@@ -486,29 +494,30 @@ fn check_bounds(p: &Parameter, place: &Place<'_>) -> Result<()> {
 /// As for [`read_plugin`].
 unsafe fn read_state(
     desc: &'static lahar_state_desc,
-    place: &Place<'_>,
+    location: &Location<'_>,
     index: usize,
 ) -> Result<StateVariable> {
-    let numbered = place.inside(format!("{}, state variable {index}", place.at));
-    // SAFETY: told by the caller.
+    let numbered = location.inside(format!("{}, state variable {index}", location.at));
+    // SAFETY: by contract of the caller.
     let key = unsafe { numbered.identifier("key", desc.key, "") }?;
-    let place = &place.inside(format!("{}, state variable `{}`", place.at, key.text));
-    // SAFETY: told by the caller.
-    let (unit, description) =
-        unsafe { (place.text("unit", desc.unit)?, place.text("description", desc.description)?) };
+    let location = &location.inside(format!("{}, state variable `{}`", location.at, key.text));
+    // SAFETY: by contract of the caller.
+    let (unit, description) = unsafe {
+        (location.text("unit", desc.unit)?, location.text("description", desc.description)?)
+    };
     let kind = match desc.kind {
         LAHAR_STATE_SCALAR => StateKind::Scalar,
         LAHAR_STATE_VECTOR => StateKind::Vector,
         LAHAR_STATE_SYMMETRIC => StateKind::Symmetric,
         LAHAR_STATE_TENSOR => StateKind::Tensor,
-        other => return Err(place.error(format!("expected kind 0 to 3, got {other}"))),
+        other => return Err(location.error(format!("expected kind 0 to 3, got {other}"))),
     };
     let rotation = match desc.rotation {
         LAHAR_ROTATION_NONE => Rotation::None,
         LAHAR_ROTATION_OBJECTIVE => Rotation::Objective,
-        other => return Err(place.error(format!("expected rotation 0 or 1, got {other}"))),
+        other => return Err(location.error(format!("expected rotation 0 or 1, got {other}"))),
     };
-    place.ensure(desc.initial.is_finite(), || {
+    location.ensure(desc.initial.is_finite(), || {
         format!("expected a finite initial value, got {}", desc.initial)
     })?;
     Ok(StateVariable {

@@ -1,4 +1,4 @@
-//! The table of functions that plugins get: log, error text, wish to stop.
+//! The table of functions that plugins get: log, error text, request to stop.
 
 use crate::log::push_current;
 use lahar_plugin_abi::{LAHAR_PLUGIN_ABI_MINOR, lahar_host_api};
@@ -9,7 +9,7 @@ thread_local! {
     static ERROR: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// The host table; plugins may keep its address.
+/// The host table; plugins may store its address.
 pub(super) static HOST: lahar_host_api = lahar_host_api {
     struct_size: size_of::<lahar_host_api>() as u32,
     abi_minor: LAHAR_PLUGIN_ABI_MINOR,
@@ -33,7 +33,7 @@ unsafe extern "C" fn log(level: i32, message: *const c_char) {
 unsafe extern "C" fn set_error(message: *const c_char) {
     // SAFETY: as in `log`.
     let text = unsafe { text_of(message) };
-    let _ = ERROR.try_with(|e| e.replace(text)); // a thread that is being taken down keeps no text
+    let _ = ERROR.try_with(|e| e.replace(text)); // a thread that is being destroyed stores no text
 }
 
 unsafe extern "C" fn should_stop() -> i32 {
@@ -47,6 +47,6 @@ unsafe fn text_of(message: *const c_char) -> Option<String> {
     if message.is_null() {
         return None;
     }
-    // SAFETY: told by the caller.
+    // SAFETY: by contract of the caller.
     Some(unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned())
 }

@@ -1,4 +1,5 @@
-//! Finds and opens plugin libraries. A file is opened once in a process and stays loaded until it ends.
+//! Finds and opens plugin libraries. A file is opened once in a process and stays loaded until it
+//! ends.
 
 use super::exclusive;
 use super::handshake;
@@ -21,7 +22,7 @@ static LOADED: Mutex<Vec<&'static Plugin>> = Mutex::new(Vec::new());
 
 type Entry = unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_desc;
 
-/// The plugin that makes plugins of libraries that are none, such as those with a UMAT.
+/// The adapter: a plugin that makes plugins of other libraries, such as those with a UMAT.
 const ADAPTER: &str = "lahar_umat";
 
 /// Its export.
@@ -29,7 +30,7 @@ const ADAPT: &str = "lahar_plugin_adapt_v1\0";
 
 type Adapt = unsafe extern "C" fn(*const lahar_host_api, *const c_char) -> *const lahar_plugin_desc;
 
-/// Majors whose entry symbols are looked for when that of this library is missing.
+/// Major versions whose entry symbols are looked for if that of this library is missing.
 const PROBED_MAJORS: std::ops::RangeInclusive<u32> = 0..=9;
 
 /// The plugin of a path (a text with a `/`) or of a bare name; see `Context::load_plugin`.
@@ -49,14 +50,16 @@ pub(crate) fn load(name_or_path: &str) -> Result<&'static Plugin> {
     Ok(plugin)
 }
 
-/// Looks for the library of a bare name in the absolute folders of `LAHAR_PLUGIN_PATH`, then where this library is installed.
+/// Looks for the library of a bare name in the absolute folders of `LAHAR_PLUGIN_PATH`, then where
+/// this library is installed.
 fn find(name: &str) -> Result<PathBuf> {
     if name.is_empty() {
         return Err(Error::invalid("the name of the plugin is empty; give a name or a path"));
     }
     let file = format!("{DLL_PREFIX}{name}{DLL_SUFFIX}");
     let variable = std::env::var_os("LAHAR_PLUGIN_PATH").unwrap_or_default();
-    // An empty or relative folder would mean the current directory, from which nothing is loaded unasked.
+    // An empty or relative folder would mean the current directory, from which nothing is loaded
+    // unasked.
     let asked: Vec<PathBuf> =
         std::env::split_paths(&variable).filter(|folder| folder.is_absolute()).collect();
     let installed = installed_folders();
@@ -82,8 +85,8 @@ fn find(name: &str) -> Result<PathBuf> {
     ))
 }
 
-/// Where plugins of this library's installation stand: `lahar/plugins-1` beside the library, or under `lib` beside the folder of a
-/// program that contains it.
+/// The folder of plugins of this library's installation: `lahar/plugins-1` beside the library, or
+/// under `lib` beside the folder of a program that contains it.
 fn installed_folders() -> Vec<PathBuf> {
     let Some(own) = own_path() else { return Vec::new() };
     let folder = own.parent().unwrap_or(Path::new("/"));
@@ -100,12 +103,13 @@ fn own_path() -> Option<PathBuf> {
         dli_sname: std::ptr::null(),
         dli_saddr: std::ptr::null_mut(),
     };
-    // SAFETY: the address is of this library's own code, and `info` is a place for the answer.
+    // SAFETY: the address is of this library's own code, and `info` can hold the answer.
     let found = unsafe { libc::dladdr(own_path as *const libc::c_void, &mut info) } != 0;
     if !found || info.dli_fname.is_null() {
         return None;
     }
-    // SAFETY: the system gives a text that ends with a NUL and lives as long as this library is loaded.
+    // SAFETY: the system gives a text that ends with a NUL and lives as long as this library is
+    // loaded.
     let name = unsafe { CStr::from_ptr(info.dli_fname) };
     fs::canonicalize(OsStr::from_bytes(name.to_bytes())).ok()
 }
@@ -159,8 +163,9 @@ fn foreign_machine(start: &[u8]) -> Option<u16> {
     (start[..4] == *b"\x7fELF" && MACHINE != 0 && machine != MACHINE).then_some(machine)
 }
 
-/// Length that a 64-bit little-endian ELF file must have to hold its loaded segments and its table of sections, which
-/// linkers write last. The system's loader maps a shorter file and then dies of a bus error, and the host with it.
+/// Length that a 64-bit little-endian ELF file must have to hold its loaded segments and its table
+/// of sections, which linkers write last. The system's loader maps a shorter file and then dies of
+/// a bus error, and the host with it.
 fn needed_length(start: &[u8]) -> Option<u64> {
     const LOAD: u32 = 1;
     let u16_at = |at: usize| Some(u16::from_le_bytes(start.get(at..at + 2)?.try_into().ok()?));
@@ -184,8 +189,8 @@ fn needed_length(start: &[u8]) -> Option<u64> {
 
 fn open(path: &Path) -> Result<Plugin> {
     let shown = path.display();
-    // SAFETY: the user asked for this library; its initialisers run with the rights of the process, which the
-    // documentation of `lahar_context_load_plugin` says.
+    // SAFETY: the user asked for this library; its initialisers run with the rights of the process,
+    // which the documentation of `lahar_context_load_plugin` says.
     let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) }.map_err(|e| {
         let reason = with_source(&e);
         let hint = if reason.contains("undefined symbol") {
@@ -199,7 +204,8 @@ fn open(path: &Path) -> Result<Plugin> {
     let entry = find_entry(&library, path);
     // SAFETY: the symbol is only looked for.
     let is_adapter = unsafe { library.get::<Adapt>(ADAPT.as_bytes()) }.is_ok();
-    // Thread-local destructors and static texts of a library live on: it is never unloaded, usable or not.
+    // Thread-local destructors and static texts of a library live on: it is never unloaded, usable
+    // or not.
     std::mem::forget(library);
     let entry = match entry {
         Err(_) if is_adapter => {
@@ -210,14 +216,16 @@ fn open(path: &Path) -> Result<Plugin> {
         entry => entry?,
     };
     take_error();
-    // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock of exclusive functions.
+    // SAFETY: the symbol's name fixes its type; the host table is static; the caller holds the lock
+    // of exclusive functions.
     let desc = unsafe { entry(&HOST) };
     if desc.is_null() {
         let why = take_error().unwrap_or_else(|| "without saying why".into());
         let text = format!("plugin {shown}: it refused to load: {why}");
         return Err(Error::new(Status::PluginRefused, text));
     }
-    // SAFETY: the entry of this major returns a table of this major, valid for the life of the process.
+    // SAFETY: the entry of this major returns a table of this major, valid for the life of the
+    // process.
     unsafe { handshake::read_plugin(desc, path) }
 }
 
@@ -244,7 +252,8 @@ fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
     let Some(adapt) = adapt else { return with(&format!("{shown} is not an adapter")) };
     let foreign = CString::new(path.as_os_str().as_bytes()).unwrap_or_default();
     take_error();
-    // SAFETY: the host table is static, the path ends with a NUL; the caller holds the lock of exclusive functions.
+    // SAFETY: the host table is static, the path ends with a NUL; the caller holds the lock of
+    // exclusive functions.
     let desc = unsafe { adapt(&HOST, foreign.as_ptr()) };
     if desc.is_null() {
         let why = take_error().unwrap_or_else(|| "without saying why".into());
@@ -255,7 +264,8 @@ fn adapted(path: &Path, not_a_plugin: Error) -> Result<Plugin> {
         );
         return Err(Error::new(Status::PluginInvalid, text));
     }
-    // SAFETY: an adapter of this major returns a table of this major, valid for the life of the process.
+    // SAFETY: an adapter of this major returns a table of this major, valid for the life of the
+    // process.
     unsafe { handshake::read_plugin(desc, path) }
 }
 

@@ -1,4 +1,5 @@
-//! Plugins that are linked into the program: their entries are called and their tables checked as those of a library are.
+//! Plugins that are linked into the program: their entries are called and their tables checked as
+//! those of a library are.
 
 use super::exclusive;
 use super::handshake;
@@ -10,7 +11,7 @@ use std::ffi::CString;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Entry of a plugin that is written in Rust: keeps the host's table and gives its own.
+/// Entry of a plugin that is written in Rust: stores the host's table and returns its own.
 pub type RustEntry = fn(&'static lahar_host_api) -> LinkedPlugin;
 
 /// The entry of a plugin that is linked in.
@@ -26,8 +27,8 @@ enum Language {
 impl StaticEntry {
     /// # Safety
     ///
-    /// `entry` follows the plugin ABI: it returns NULL or a table as long as its first member says, whose pointers are NULL or valid for
-    /// the life of the process, as the table itself is.
+    /// `entry` follows the plugin ABI: it returns NULL or a table as long as its first member says,
+    /// whose pointers are NULL or valid for the life of the process, as the table itself is.
     pub(crate) unsafe fn c(
         entry: unsafe extern "C" fn(*const lahar_host_api) -> *const lahar_plugin_desc,
     ) -> Self {
@@ -47,7 +48,8 @@ impl StaticEntry {
 
     fn call(self) -> *const lahar_plugin_desc {
         match self.0 {
-            // SAFETY: the host table is static, the rest was asked for by `StaticEntry::c`; the caller holds the lock of exclusive functions.
+            // SAFETY: the host table is static, the rest was asked for by `StaticEntry::c`; the
+            // caller holds the lock of exclusive functions.
             Language::C(entry) => unsafe { entry(&HOST) },
             Language::Rust(entry) => entry(&HOST).desc(),
         }

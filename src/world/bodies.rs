@@ -1,4 +1,4 @@
-//! Bodies come and go.
+//! Adding, changing and removing bodies.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use super::host_arrays::{ParticleArrays, Strided, Strides};
 /// Most particles of a body.
 const MOST: usize = u32::MAX as usize - 1;
 
-/// Temperature of new particles whose model wants it [K].
+/// Temperature of new particles if their model takes it as input [K].
 const ROOM_TEMPERATURE: f64 = 293.15;
 
 impl<const D: usize> Parts<D> {
@@ -140,7 +140,7 @@ impl<const D: usize> Parts<D> {
         )
     }
 
-    /// What decides which fields a body of this world and a material carries.
+    /// The options that decide which fields a body of this world and a material has.
     fn carrier<'a>(&self, material: &'a Material, f_bar: bool) -> Carrier<'a> {
         let Options { shape, transfer, body_force, .. } = self.method.options;
         Carrier { dimension: D, shape, transfer, body_force, f_bar, model: material.model() }
@@ -178,7 +178,8 @@ impl<const D: usize> Parts<D> {
         self.bodies.iter().try_for_each(|body| self.check_particles(body))
     }
 
-    /// Checks everything that a host may have written: finite, masses and volumes positive, positions inside the grid.
+    /// Checks everything that a host may have written: finite, masses and volumes positive,
+    /// positions inside the grid.
     pub fn check_particles(&self, body: &Body) -> Result<()> {
         let particles = &body.particles;
         let layout = particles.layout;

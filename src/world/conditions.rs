@@ -115,7 +115,8 @@ impl World {
         Ok(())
     }
 
-    /// Number of particles that carry a traction, their area [m²], and the force on the body in the last step [N].
+    /// Number of particles that carry a traction, their area [m²], and the force on the body in the
+    /// last step [N].
     pub fn traction_force(&self, id: i64) -> Result<(usize, f64, [f64; 3])> {
         let entry = self.condition::<Loaded>(id)?;
         let surface = &entry.condition.surface;

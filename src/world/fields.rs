@@ -33,7 +33,8 @@ pub struct FieldSliceMut<'a> {
     pub stride: usize,
 }
 
-/// The fields of a body with their first columns: those of the engine, then the state variables of the model.
+/// The fields of a body with their first columns: those of the engine, then the state variables of
+/// the model.
 fn fields_of(body: &Body, dimension: usize) -> Vec<(FieldInfo, usize)> {
     let layout = &body.particles.layout;
     let mut list = layout.fields(dimension);
@@ -96,7 +97,7 @@ impl World {
         self.field_view_mut(body, field)
     }
 
-    /// The same for who writes later, and then calls [`World::views_closed`].
+    /// The same for a caller that writes later and then calls [`World::views_closed`].
     pub fn field_view_mut(&mut self, body: i64, field: &str) -> Result<FieldSliceMut<'_>> {
         self.check_alive()?;
         let info = self.field_info(body, field)?;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Places of the components of some points in a flat array.
+/// Layout of the components of points in a flat array.
 #[derive(Clone, Copy, Debug)]
 pub struct Strides {
     /// Number of points.
@@ -45,7 +45,7 @@ impl Strides {
         (self.count - 1) * self.point + (self.components - 1) * self.component + 1
     }
 
-    /// Place of component c of point k.
+    /// Index of component c of point k.
     #[inline(always)]
     pub fn at(&self, c: usize, k: usize) -> usize {
         c * self.component + k * self.point

@@ -1,6 +1,7 @@
 //! A world owns a grid, bodies and walls, and steps them.
 //!
-//! [`World`] is the façade that the C ABI wraps; the parts of it, in two or three dimensions, stand in [`step::parts`](crate::step::parts).
+//! [`World`] is the façade that the C ABI wraps; its parts, in two or three dimensions, are in
+//! [`step::parts`](crate::step::parts).
 
 pub mod bodies;
 pub mod conditions;
@@ -33,7 +34,7 @@ use host_arrays::ParticleArrays;
 use options::{Options, check_damping};
 use queries::Totals;
 
-/// A host's step may exceed the stable one by this much: its own arithmetic.
+/// Factor by which a host's step may exceed the stable one: round-off of the host's arithmetic.
 const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
 
 /// Bodies, grid, walls and time.
@@ -43,7 +44,7 @@ pub struct World {
     next_body: i64,
     last_dt: f64,
     poisoned: bool,
-    told_unreliable: bool,
+    reported_unreliable: bool,
 }
 
 pub(crate) enum Inner {
@@ -83,7 +84,7 @@ impl World {
             next_body: 0,
             last_dt: 0.0,
             poisoned: false,
-            told_unreliable: false,
+            reported_unreliable: false,
         })
     }
 
@@ -139,7 +140,8 @@ impl World {
         Ok(())
     }
 
-    /// Switches F-bar on or off for a body (off at first), see [`average_dilation`](mod@crate::step::average_dilation).
+    /// Switches F-bar on or off for a body (off at first), see
+    /// [`average_dilation`](mod@crate::step::average_dilation).
     pub fn set_f_bar(&mut self, body: i64, on: bool) -> Result<()> {
         self.check_alive()?;
         on!(&mut self, s => s.set_f_bar(body, on))
@@ -157,8 +159,9 @@ impl World {
 
     /// One step, of length `dt` [s] or the stable one; gives the length.
     ///
-    /// Refused with [`Status::StepTooLarge`] if `dt` exceeds the stable step. If a material fails in the middle the world is
-    /// poisoned, unless the option `retries` lets steps be repeated smaller: then [`Status::SmallerStep`] says that nothing was done.
+    /// Refused with [`Status::StepTooLarge`] if `dt` exceeds the stable step. If a material fails
+    /// in the middle the world is poisoned, unless the option `retries` lets steps be repeated
+    /// smaller: then [`Status::SmallerStep`] says that nothing was done.
     pub fn step(&mut self, dt: Option<f64>) -> Result<f64> {
         let (stable, automatic) = (self.prepare()?, dt.is_none());
         let dt = match dt {
@@ -185,7 +188,8 @@ impl World {
         self.integrate(dt, automatic)
     }
 
-    /// Steps until the time `until` [s], or `max_steps` steps. Gives the number of steps that were done, and the first error.
+    /// Steps until the time `until` [s], or `max_steps` steps. Gives the number of steps that were
+    /// done, and the first error.
     ///
     /// The last two steps are shortened so that `until` is met exactly.
     pub fn advance(&mut self, until: f64, max_steps: i64) -> (i64, Result<()>) {
@@ -272,14 +276,14 @@ impl World {
 
     /// Logs once in a world's life that a model answered with less accuracy than it promises.
     fn log_unreliable_points(&mut self, found: Option<Unreliable>) {
-        let Some(found) = found.filter(|_| !self.told_unreliable) else {
+        let Some(found) = found.filter(|_| !self.reported_unreliable) else {
             return;
         };
-        self.told_unreliable = true;
+        self.reported_unreliable = true;
         let Unreliable { points, body, particle } = found;
         let text = format!(
             "in step {} the model `{}` answered for {points} points with less accuracy than it promises, first for particle \
-             {particle} of body {body}; smaller steps may help; this is told once",
+             {particle} of body {body}; smaller steps may help; this is reported once",
             self.step_count() - 1,
             self.model_of(body)
         );
@@ -303,7 +307,8 @@ impl World {
         Error::invalid(text).at(place)
     }
 
-    /// The error of a failure that counts; the call that failed is written to a file if the host asked for that.
+    /// The error of a failure; the call that failed is written to a file if the host asked for
+    /// that.
     fn error_of(&self, failure: Failure) -> Error {
         let Failure { mut error, capsule } = failure;
         if let Some(capsule) = capsule {
@@ -312,7 +317,7 @@ impl World {
         error
     }
 
-    /// Number and time of what happens now, for errors.
+    /// Number and time of the present step, for errors.
     fn place(&self) -> Place {
         on!(&self, s => s.clock.place())
     }
@@ -360,18 +365,21 @@ impl World {
         })
     }
 
-    /// Whether all particles stand in blocks, so that only a step changes their order.
+    /// Whether all particles are sorted into blocks, so that only a step or a refresh changes their
+    /// order.
     pub fn is_sorted(&self) -> bool {
         on!(&self, s => s.freshness.is_grouped())
     }
 
-    /// Whether the grid is that of the last step, and nothing has been changed since that it should show.
+    /// Whether the grid is that of the last step, and nothing has been changed since that it should
+    /// show.
     pub fn is_fresh(&self) -> bool {
         on!(&self, s => s.freshness.mapped().is_some())
     }
 
-    /// Makes the grid show the particles and loads as they are: sorts particles that came, went or were
-    /// moved into blocks, and maps mass, momentum and force. Nothing is done if that is so already.
+    /// Makes the grid show the particles and loads as they are: sorts particles that came, went or
+    /// were moved into blocks, and maps mass, momentum and force. Nothing is done if that is so
+    /// already.
     pub fn refresh(&mut self) -> Result<()> {
         if self.is_fresh() {
             return Ok(());
@@ -395,7 +403,7 @@ impl World {
         on!(&mut self, s => s.hooks.set(point, hook));
     }
 
-    /// Sets who is told about the stages of every chunk, on the thread that works on it; a call per chunk and stage.
+    /// Sets the stopwatch that is called for every chunk and stage, on the thread that works on it.
     pub fn set_stopwatch(&mut self, stopwatch: Option<Arc<Stopwatch>>) {
         on!(&mut self, s => s.method.stopwatch = stopwatch);
     }
@@ -453,7 +461,7 @@ impl World {
 }
 
 impl<const D: usize> Parts<D> {
-    /// Place of a body among the bodies.
+    /// Index of a body among the bodies.
     pub fn body_position(&self, id: i64) -> Result<usize> {
         let found = self.bodies.iter().position(|b| b.id == id);
         found.ok_or_else(|| not_found("body", id, self.bodies.iter().map(|b| b.id)))
@@ -465,7 +473,8 @@ impl<const D: usize> Parts<D> {
     }
 }
 
-/// Writes the call at a point that failed where the host wants it, and says where; a file that can not be written is for the log.
+/// Writes the call at a point that failed to the host's folder, and gives a text with its path. If
+/// the file cannot be written, that is logged.
 fn write_capsule(context: &Context, mut capsule: Capsule) -> String {
     let Some(folder) = context.capsule_folder() else { return String::new() };
     if let Some(plugin) = context.model(&capsule.model).ok().and_then(|m| context.plugin_of(m)) {

@@ -1,4 +1,4 @@
-//! What a world tells: totals, grid, samples.
+//! Queries of a world: totals, grid, samples.
 
 use crate::background::Background;
 use crate::background::space::FARTHEST;
@@ -34,7 +34,8 @@ const LEAF: usize = 4096;
 const SUMS: usize = 13;
 
 impl<const D: usize> Parts<D> {
-    /// Totals of one body or of all. The order of the sums does not depend on the number of threads.
+    /// Totals of one body or of all. The order of the sums does not depend on the number of
+    /// threads.
     pub fn totals(&self, body: Option<i64>) -> Totals {
         let mut sums = [0.0; SUMS];
         let mut particles = 0;
@@ -129,7 +130,8 @@ impl<const D: usize> Parts<D> {
         Ok(())
     }
 
-    /// Mass-weighted mean Σ w m q / Σ w m of a node field at a point; false and zeros where there is no mass.
+    /// Mass-weighted mean Σ w m q / Σ w m of a node field at a point; false and zeros where there
+    /// is no mass.
     pub fn sample(&self, field: &str, point: &[f64], out: &mut [f64]) -> Result<bool> {
         let components = node_field_components::<D>(field)?;
         if point.len() != D || out.len() != components {

@@ -8,7 +8,7 @@ use crate::step::parts::Parts;
 use super::bodies::init_state;
 use super::{World, on};
 
-/// Steps between two looks at the equilibrium in [`World::settle`].
+/// Steps between two checks of the equilibrium in [`World::settle`].
 pub const STEPS_BETWEEN_CHECKS: i64 = 50;
 
 /// Most nodes of a block.
@@ -25,8 +25,8 @@ pub struct Equilibrium {
     pub kinetic_ratio: f64,
     /// Σ |F_i|, the forces that neither stresses nor supports balance [N].
     pub unbalanced_force: f64,
-    /// Sum of the sizes of the forces that load the world: gravity, tractions, reactions of prescribed velocities; if there are none, the
-    /// reactions of walls [N].
+    /// Sum of the sizes of the forces that load the world: gravity, tractions, reactions of
+    /// prescribed velocities; if there are none, the reactions of walls [N].
     pub external_force: f64,
     /// Unbalanced over external force, see [CND-7] [–].
     pub unbalanced_ratio: f64,
@@ -59,13 +59,14 @@ pub struct Settled {
     pub converged: bool,
     /// Committed steps.
     pub steps: i64,
-    /// The last look at the equilibrium.
+    /// The equilibrium at the last check.
     pub equilibrium: Equilibrium,
 }
 
 impl World {
-    /// How far the world is from equilibrium: energies of the particles, and the forces on the grid, which is
-    /// that of the last step or, where something has been changed since, is [refreshed](World::refresh).
+    /// How far the world is from equilibrium: energies of the particles, and the forces on the
+    /// grid, which is that of the last step or, where something has been changed since, is
+    /// [refreshed](World::refresh).
     pub fn equilibrium(&mut self) -> Result<Equilibrium> {
         self.refresh()?;
         self.equilibrium_of_grid()
@@ -76,10 +77,11 @@ impl World {
         on!(&self, s => s.equilibrium())
     }
 
-    /// Steps of the stable length until the world is in equilibrium, or until steps or time have run out. Gives what was reached, and
-    /// the error that ended it.
+    /// Makes steps of the stable length until the world is in equilibrium, or until `max_steps` or
+    /// `until` is reached. Gives what was reached, and the error that ended it.
     ///
-    /// It looks every [`STEPS_BETWEEN_CHECKS`] steps, and does not stop before the last row of every table in use has passed.
+    /// Equilibrium is checked every [`STEPS_BETWEEN_CHECKS`] steps, and not accepted before the
+    /// time of the last row of every table in use.
     pub fn settle(&mut self, criteria: &Criteria) -> (Settled, Result<()>) {
         let mut settled = Settled::default();
         if let Err(error) = self.check_alive().and_then(|()| self.check_criteria(criteria)) {
@@ -89,8 +91,8 @@ impl World {
             let steps = STEPS_BETWEEN_CHECKS.min(criteria.max_steps - settled.steps);
             let (done, result) = self.advance(criteria.until.min(f64::MAX), steps);
             settled.steps += done;
-            let looked = result.and_then(|()| self.equilibrium());
-            settled.equilibrium = match looked {
+            let checked = result.and_then(|()| self.equilibrium());
+            settled.equilibrium = match checked {
                 Ok(equilibrium) => equilibrium,
                 Err(error) => return (settled, Err(error)),
             };
@@ -132,8 +134,9 @@ impl World {
         Ok(())
     }
 
-    /// Gives the particles of a body the stress of level ground at rest: σ_v = −γ z along gravity at the depth z below `surface` [m],
-    /// k0 σ_v along the other axes, no shear; nothing above the surface. The model derives its state from that.
+    /// Gives the particles of a body the stress of level ground at rest: σ_v = −γ z along gravity
+    /// at the depth z below `surface` [m], k0 σ_v along the other axes, no shear; nothing above the
+    /// surface. The model derives its state from that.
     ///
     /// `unit_weight` γ [N/m³]; None: the body's mass over its volume times gravity, as it is now.
     pub fn set_k0_stress(
@@ -151,7 +154,8 @@ impl World {
         })
     }
 
-    /// Lets the model of a body derive its state from the stresses anew, as when the body was added: what it remembered is lost.
+    /// Makes the model of a body derive its state from the stresses anew, as when the body was
+    /// added; the old state is lost.
     pub fn init_body_state(&mut self, body: i64) -> Result<()> {
         self.check_alive()?;
         on!(&mut self, s => s.start_anew(s.body_position(body)?, None))
@@ -188,7 +192,8 @@ impl<const D: usize> Parts<D> {
         })
     }
 
-    /// Σ V σ:σ / (2 ρ c²) with the largest wave speed c: about the elastic energy of the stresses, initial ones included [J].
+    /// Σ V σ:σ / (2 ρ c²) with the largest wave speed c: about the elastic energy of the stresses,
+    /// initial ones included [J].
     fn energy_of_stresses(&self) -> Result<f64> {
         let limits = self.limits()?;
         let mut sum = 0.0;
@@ -207,8 +212,8 @@ impl<const D: usize> Parts<D> {
 
     /// Sums of |F_i| and of the forces that load the world, block by block in Morton order.
     ///
-    /// What supports take up is told from the force alone, as on a node at rest: a wall leaves of the force what it would leave of a
-    /// velocity.
+    /// What supports take up follows from the force alone, as on a node at rest: a wall takes from
+    /// the force the components that it would take from a velocity.
     fn forces(&self, gravity: [f64; 3]) -> [f64; 2] {
         let loads = self.conditions.tractions.iter().map(|entry| size(&entry.condition.applied));
         let (mut unbalanced, mut external, mut walls) = (0.0, loads.sum::<f64>(), 0.0);
@@ -306,7 +311,8 @@ impl<const D: usize> Parts<D> {
         }
     }
 
-    /// Sets the stresses, if told, and lets the model derive its state from them; on error the old ones stay.
+    /// Sets the stresses if `ground` is given, and makes the model derive its state from them; on
+    /// error the old ones stay.
     fn start_anew(&mut self, at: usize, ground: Option<&Ground>) -> Result<()> {
         let layout = self.bodies[at].particles.layout;
         let ranges = [(layout.stress, 6), (layout.state.first, layout.state.count)];

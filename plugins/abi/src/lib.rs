@@ -1,26 +1,32 @@
 //! The contract between lahar and a constitutive model: types and constants only.
 //!
-//! `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that exports one function,
-//! `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the name is the major version of the ABI;
-//! within a major version tables only grow at their end and every table begins with its size.
+//! `include/lahar/lahar_plugin.h` is generated from this file. A plugin is a shared library that
+//! exports one function, `lahar_plugin_entry_v1`, and links nothing of lahar. The number in the
+//! name is the major version of the ABI; within a major version tables only grow at their end and
+//! every table begins with its size.
 //!
-//! Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as the tensor
-//! components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...; stresses have 6 and
-//! gradients 9 components in plane strain too. Component `c` of point `k` of an array stands at `base[c * stride + k]`.
+//! Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as
+//! the tensor components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx,
+//! ...; stresses have 6 and gradients 9 components in plane strain too. Component `c` of point `k`
+//! of an array stands at `base[c * stride + k]`.
 //!
-//! Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of `init_state`, `update`, `wave_speed` and
-//! extension calls, then `destroy`. Libraries are never unloaded. Each function has a tag:
+//! Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of
+//! `init_state`, `update`, `wave_speed` and extension calls, then `destroy`. Libraries are never
+//! unloaded. Each function has a tag:
 //!
 //! * `[exclusive]`: one such call at a time in the whole process, on any thread;
-//! * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as exclusive ones. If the model does not
-//!   declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either kind come one at a time over all such models of the library.
+//! * `[concurrent]`: on any thread, at the same time as other calls on the same instance and as
+//!   exclusive ones. If the model does not declare `LAHAR_CAPABILITY_THREAD_SAFE`, calls of either
+//!   kind come one at a time over all such models of the library.
 //!
-//! No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it is called with traps off. The engine
-//! may call `update` with the same start as often as it likes: an end must depend on the start, the step and the instance alone.
+//! No function may unwind, `longjmp`, exit or print, or change the floating-point environment; it
+//! is called with traps off. The engine may call `update` with the same start any number of times:
+//! the end must depend only on the start, the step and the instance.
 //!
-//! Versions: tables grow only at their ends, and both sides tell their minor version. A plugin that needs a newer engine says so in
-//! `required_minor` of the model, or refuses in its entry after a look at `abi_minor` of the host table. An engine takes tables that
-//! are longer than it knows, and fills a batch as far as its own `struct_size`.
+//! Versions: tables grow only at their ends, and both sides give their minor version. A plugin that
+//! needs a newer engine sets `required_minor` of the model, or refuses in its entry if `abi_minor`
+//! of the host table is too low. An engine accepts tables that are longer than those that it knows,
+//! and fills a batch up to its own `struct_size`.
 #![no_std]
 #![allow(non_camel_case_types)]
 
@@ -35,15 +41,16 @@ pub const LAHAR_PLUGIN_ABI_MAJOR: u32 = 1;
 /// Minor version: tables may have grown at their ends since lower minors.
 pub const LAHAR_PLUGIN_ABI_MINOR: u32 = 0;
 
-/// The model takes the strain increment; the engine has turned the start stress (and objective state) by exp(W dt), W = skw L:
-/// the Jaumann rate.
+/// The model takes the strain increment; the engine has turned the start stress (and objective
+/// state) by exp(W dt), W = skw L: the Jaumann rate.
 pub const LAHAR_KINEMATICS_STRAIN_INCREMENT: i32 = 0;
 /// The model takes the velocity gradient and does its own rotation: `stress0` arrives unrotated.
 pub const LAHAR_KINEMATICS_VELOCITY_GRADIENT: i32 = 1;
 /// The model takes the deformation gradient at the end of the step: `stress0` arrives unrotated.
 pub const LAHAR_KINEMATICS_DEFORMATION_GRADIENT: i32 = 2;
-/// The model takes the strain increment; the engine has turned the start stress (and objective state) by the increment of the
-/// rotation R of F = R U instead of by exp(W dt): the Green-Naghdi rate.
+/// The model takes the strain increment; the engine has turned the start stress (and objective
+/// state) by the increment of the rotation R of F = R U instead of by exp(W dt): the Green-Naghdi
+/// rate.
 pub const LAHAR_KINEMATICS_GREEN_NAGHDI: i32 = 3;
 
 /// A real number.
@@ -73,8 +80,9 @@ pub const LAHAR_INPUT_DENSITY: i32 = 1;
 pub const LAHAR_INPUT_ELEMENT_LENGTH: i32 = 2;
 /// Input: temperature [K], the particle field `temperature` of the host.
 pub const LAHAR_INPUT_TEMPERATURE: i32 = 3;
-/// Input: specific internal energy at the start of the step [J/kg]: the particle field `strain_energy` over the mass. The field follows the
-/// work of the stress, or the output `energy` of a model that gives it.
+/// Input: specific internal energy at the start of the step [J/kg]: the particle field
+/// `strain_energy` over the mass. The field follows the work of the stress, or the output `energy`
+/// of a model that gives it.
 pub const LAHAR_INPUT_INTERNAL_ENERGY: i32 = 4;
 /// Input: pore pressure, compression positive [Pa], the particle field `pore_pressure` of the host.
 pub const LAHAR_INPUT_PORE_PRESSURE: i32 = 5;
@@ -91,10 +99,11 @@ pub const LAHAR_INPUT_PARTICLE_ID: i32 = 9;
 pub const LAHAR_OUTPUT_WAVE_SPEED: u64 = 1;
 /// Output: kinematic diffusivity [m^2/s], for the viscous limit of the time step.
 pub const LAHAR_OUTPUT_DIFFUSIVITY: u64 = 2;
-/// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces the engine's work integral.
+/// Output: energy per current volume at the end of the step [J/m^3], stored or internal; replaces
+/// the engine's work integral.
 pub const LAHAR_OUTPUT_ENERGY: u64 = 4;
-/// Output: factor by which the model wants the time step changed, in (0, 1] [-]. Below 1 the engine repeats the step smaller if the host
-/// allows that, else it shortens the next one.
+/// Output: factor on the time step that the model asks for, in (0, 1] [-]. Below 1 the engine
+/// repeats the step with a smaller length if the host allows that, else it shortens the next step.
 pub const LAHAR_OUTPUT_DT_FACTOR: u64 = 8;
 /// Output: one of the `LAHAR_POINT_*` per point.
 pub const LAHAR_OUTPUT_STATUS: u64 = 16;
@@ -107,12 +116,14 @@ pub const LAHAR_CAPABILITY_POINTWISE: u64 = 2;
 pub const LAHAR_CAPABILITY_DETERMINISTIC: u64 = 4;
 /// The extension `lahar.tangent` is offered.
 pub const LAHAR_CAPABILITY_TANGENT: u64 = 8;
-/// The model may end the process (`STOP` of legacy code); the engine warns when it loads the plugin.
+/// The model may end the process (`STOP` of legacy code); the engine warns when it loads the
+/// plugin.
 pub const LAHAR_CAPABILITY_MAY_STOP: u64 = 16;
 /// The model may print (legacy code); the engine warns when it loads the plugin.
 pub const LAHAR_CAPABILITY_MAY_PRINT: u64 = 32;
 
-/// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split copies.
+/// Transfer rule of a state variable when points are merged: the mean, weighted by mass. A split
+/// copies.
 pub const LAHAR_TRANSFER_MEAN: i32 = 0;
 /// Transfer rule: the largest, component by component.
 pub const LAHAR_TRANSFER_MAX: i32 = 1;
@@ -121,9 +132,11 @@ pub const LAHAR_TRANSFER_NEVER: i32 = 2;
 
 /// The point is updated.
 pub const LAHAR_POINT_OK: i32 = 0;
-/// The point is updated, but the result is less accurate than promised; the engine logs the first of them.
+/// The point is updated, but the result is less accurate than promised; the engine logs the first
+/// of them.
 pub const LAHAR_POINT_UNRELIABLE: i32 = 1;
-/// The point is updated, but the model wants a smaller step: `dt_factor` tells how much, without that output a half is taken.
+/// The point is updated, but the model asks for a smaller step: by the factor `dt_factor`, or by
+/// one half without that output.
 pub const LAHAR_POINT_SMALLER_STEP: i32 = 2;
 /// The point could not be updated; its end is not used.
 pub const LAHAR_POINT_FAILED: i32 = 3;
@@ -142,21 +155,22 @@ pub const LAHAR_PLUGIN_LOG_INFORMATION: i32 = 2;
 /// Level: details for finding a fault.
 pub const LAHAR_PLUGIN_LOG_DETAIL: i32 = 3;
 
-/// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only members inside `struct_size`.
+/// What the engine offers to a plugin. Valid for the life of the process. A plugin uses only
+/// members inside `struct_size`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_host_api {
     /// Size of this table in bytes, as the engine knows it.
     pub struct_size: u32,
-    /// Minor version of the ABI that the engine speaks.
+    /// Minor version of the ABI that the engine has.
     pub abi_minor: u32,
-    /// Hands a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is copied. Heard while a function of the
-    /// plugin runs. [concurrent]
+    /// Passes a line to the host's log. `level` is one of `LAHAR_PLUGIN_LOG_*`; `message` is
+    /// copied. It has an effect only while a function of the plugin runs. [concurrent]
     pub log: Option<unsafe extern "C" fn(level: i32, message: *const c_char)>,
-    /// Sets the text that explains why the function that is running returns an error; `message` is copied.
-    /// [concurrent]
+    /// Sets the text that explains why the function that is running returns an error; `message` is
+    /// copied. [concurrent]
     pub set_error: Option<unsafe extern "C" fn(message: *const c_char)>,
-    /// 1 if the host wants long work to end, else 0. [concurrent]
+    /// 1 if the host asks long work to end, else 0. [concurrent]
     pub should_stop: Option<unsafe extern "C" fn() -> i32>,
 }
 
@@ -166,7 +180,7 @@ pub struct lahar_host_api {
 pub struct lahar_parameter_desc {
     /// Name by which hosts give the value: `youngs_modulus`.
     pub key: *const c_char,
-    /// Symbol of the literature: `E`.
+    /// Symbol used in the literature: `E`.
     pub symbol: *const c_char,
     /// SI unit: `Pa`, `-`.
     pub unit: *const c_char,
@@ -176,7 +190,8 @@ pub struct lahar_parameter_desc {
     pub kind: i32,
     /// 1: the host must give it; 0: `default_value` is used.
     pub required: i32,
-    /// Value if the host gives none, inside the hard bounds. Of a required parameter a typical value, with which tools try the model.
+    /// Value if the host gives none, inside the hard bounds. Of a required parameter a typical
+    /// value, with which tools try the model.
     pub default_value: f64,
     /// Smallest value that is accepted; -infinity for none.
     pub hard_min: f64,
@@ -208,7 +223,8 @@ pub struct lahar_state_desc {
     pub initial: f64,
 }
 
-/// A run of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least `n`) and do not alias each other.
+/// A batch of points. All arrays are 64-byte aligned, share `stride` (a multiple of 8, at least
+/// `n`) and do not alias each other.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_stress_batch {
@@ -230,11 +246,13 @@ pub struct lahar_stress_batch {
     pub strain_increment: *const f64,
     /// Velocity gradient L, 9 components [1/s]; NULL unless the kinematics ask for it.
     pub velocity_gradient: *const f64,
-    /// Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics ask for it.
+    /// Deformation gradient F at the end of the step, 9 components [-]; NULL unless the kinematics
+    /// ask for it.
     pub deformation_gradient: *const f64,
     /// Cauchy stress at the start, 6 components [Pa]; never written.
     pub stress0: *const f64,
-    /// State at the start, the components of all state variables in the descriptor's order; never written.
+    /// State at the start, the components of all state variables in the descriptor's order; never
+    /// written.
     pub state0: *const f64,
     /// Cauchy stress at the end, 6 components [Pa]; written by `update`.
     pub stress1: *mut f64,
@@ -248,14 +266,15 @@ pub struct lahar_stress_batch {
     pub diffusivity: *mut f64,
     /// Energy per current volume [J/m^3]; NULL unless declared.
     pub energy: *mut f64,
-    /// Wanted factor on the next time step [-]; NULL unless declared.
+    /// Factor on the time step that the model asks for [-]; NULL unless declared.
     pub dt_factor: *mut f64,
     /// `LAHAR_POINT_*` per point, zero on entry; NULL unless declared.
     pub status: *mut i32,
 }
 
-/// One constitutive model: static tables and functions. All pointers must stay valid for the life of the process. Functions that have no
-/// instance yet are given the table, so that models may share them.
+/// One constitutive model: static tables and functions. All pointers must stay valid for the life
+/// of the process. Functions that have no instance yet are given the table, so that models may
+/// share them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_model_desc {
@@ -263,11 +282,11 @@ pub struct lahar_model_desc {
     pub struct_size: u32,
     /// One of `LAHAR_KINEMATICS_*`.
     pub kinematics: i32,
-    /// Name by which hosts ask for the model: ASCII, unique.
+    /// Name by which hosts select the model: ASCII, unique.
     pub name: *const c_char,
     /// One sentence.
     pub summary: *const c_char,
-    /// Where the model is published, with a DOI if there is one.
+    /// Publication of the model, with a DOI if there is one.
     pub reference: *const c_char,
     /// Number of parameters.
     pub parameter_count: u32,
@@ -291,8 +310,9 @@ pub struct lahar_model_desc {
     pub outputs: u64,
     /// Sum of `LAHAR_CAPABILITY_*`.
     pub capabilities: u64,
-    /// Makes an instance of `model`, this table, from one value per parameter, which are inside the hard bounds; nothing is kept of `values`. Mandatory. Returns
-    /// `LAHAR_PLUGIN_OK`, or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
+    /// Makes an instance of `model`, this table, from one value per parameter, inside the hard
+    /// bounds; the model must copy what it needs of `values`. Mandatory. Returns `LAHAR_PLUGIN_OK`,
+    /// or `LAHAR_PLUGIN_ERROR` and no instance. [exclusive; after the entry]
     pub create: Option<
         unsafe extern "C" fn(
             model: *const lahar_model_desc,
@@ -303,8 +323,8 @@ pub struct lahar_model_desc {
     >,
     /// Frees an instance. Mandatory. [exclusive; once per instance, after all its other calls]
     pub destroy: Option<unsafe extern "C" fn(instance: *mut c_void)>,
-    /// Says whether the values go together; if not, writes a NUL-terminated sentence into `capacity` bytes. May be NULL.
-    /// [exclusive; before create]
+    /// Says whether the values can be combined; if not, writes a NUL-terminated sentence of at most
+    /// `capacity` bytes to `message`. May be NULL. [exclusive; before create]
     pub check: Option<
         unsafe extern "C" fn(
             model: *const lahar_model_desc,
@@ -314,24 +334,27 @@ pub struct lahar_model_desc {
             capacity: i64,
         ) -> i32,
     >,
-    /// Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial values. May be NULL.
-    /// [concurrent; between create and destroy]
+    /// Derives the first state from `stress0` and `inputs` into `state1`, which holds the initial
+    /// values. May be NULL. [concurrent; between create and destroy]
     pub init_state: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of every point. Mandatory. A point that
-    /// fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for a batch that makes no sense. [concurrent; between create and destroy]
+    /// One step of all points of the batch: writes `stress1`, `state1` and the declared outputs of
+    /// every point. Mandatory. A point that fails says so in `status`; `LAHAR_PLUGIN_ERROR` is for
+    /// a batch that cannot be processed at all. [concurrent; between create and destroy]
     pub update: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the kinematics ask for it, the
-    /// deformation gradient. Mandatory. [concurrent; between create and destroy]
+    /// Wave speed (and diffusivity, if declared) from `stress0`, `state0`, `inputs` and, if the
+    /// kinematics ask for it, the deformation gradient. Mandatory. [concurrent; between create and
+    /// destroy]
     pub wave_speed: Option<
         unsafe extern "C" fn(instance: *const c_void, batch: *const lahar_stress_batch) -> i32,
     >,
-    /// A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent` (lahar_tangent_extension), `lahar.energy`
-    /// (lahar_energy_extension), `lahar.transfer` (lahar_transfer_extension); others belong to whoever owns the domain name that they
-    /// begin with. [exclusive; after the entry]
+    /// A static table for the extension `id`, or NULL. May be NULL. The ids: `lahar.tangent`
+    /// (lahar_tangent_extension), `lahar.energy` (lahar_energy_extension), `lahar.transfer`
+    /// (lahar_transfer_extension); others belong to whoever owns the domain name that they begin
+    /// with. [exclusive; after the entry]
     pub get_extension: Option<
         unsafe extern "C" fn(model: *const lahar_model_desc, id: *const c_char) -> *const c_void,
     >,
@@ -345,10 +368,11 @@ pub struct lahar_tangent_extension {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of point `k`, at
-    /// `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component i by strain increment component j. A shear
-    /// component of the increment stands for both of its places, so that elasticity has 2 G there. Outputs of the batch may be NULL.
-    /// [concurrent; between create and destroy]
+    /// The tangent of the step that `update` makes of the same batch [Pa]: component `6 i + j` of
+    /// point `k`, at `tangent[(6 * i + j) * stride + k]`, is the derivative of `stress1` component
+    /// i by strain increment component j. A shear component of the increment stands for two
+    /// components of the tensor, such as xy and yx, so that elasticity has 2 G there. Outputs of
+    /// the batch may be NULL. [concurrent; between create and destroy]
     pub tangent: Option<
         unsafe extern "C" fn(
             instance: *const c_void,
@@ -366,8 +390,9 @@ pub struct lahar_energy_extension {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// Energy per current volume [J/m^3], one value per point, that can be had back from `stress0`, `state0` and, if the kinematics ask for
-    /// it, the deformation gradient. Outputs of the batch may be NULL. [concurrent; between create and destroy]
+    /// Energy per current volume [J/m^3], one value per point, that can be recovered, from
+    /// `stress0`, `state0` and, if the kinematics ask for it, the deformation gradient. Outputs of
+    /// the batch may be NULL. [concurrent; between create and destroy]
     pub stored: Option<
         unsafe extern "C" fn(
             instance: *const c_void,
@@ -377,7 +402,8 @@ pub struct lahar_energy_extension {
     >,
 }
 
-/// Extension `lahar.transfer`: what becomes of state variables when points are merged. Without it every rule is the mean.
+/// Extension `lahar.transfer`: how state variables are combined when points are merged. Without it
+/// every rule is the mean.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_transfer_extension {
@@ -389,7 +415,7 @@ pub struct lahar_transfer_extension {
     pub rules: *const i32,
 }
 
-/// What a plugin is. All pointers must stay valid for the life of the process.
+/// Description of a plugin. All pointers must stay valid for the life of the process.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_plugin_desc {
@@ -409,20 +435,21 @@ pub struct lahar_plugin_desc {
     pub author: *const c_char,
     /// SPDX licence expression.
     pub licence: *const c_char,
-    /// Where to find it; may be empty.
+    /// Its address in the web; may be empty.
     pub url: *const c_char,
     /// The models, one pointer each.
     pub models: *const *const lahar_model_desc,
 }
 
-/// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after `set_error`.
-/// [exclusive; once in a process, again only after it has refused]
+/// Type of the function `lahar_plugin_entry_v1`, which every plugin exports. NULL refuses, after
+/// `set_error`. [exclusive; once in a process, again only after it has refused]
 pub type lahar_plugin_entry =
     Option<unsafe extern "C" fn(host: *const lahar_host_api) -> *const lahar_plugin_desc>;
 
-/// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it makes a plugin of the foreign library at `path`
-/// (a canonical path), for example of one with a UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only
-/// after it has refused]
+/// Type of the function `lahar_plugin_adapt_v1`, which an adapter exports instead of an entry: it
+/// makes a plugin of the foreign library at `path` (a canonical path), for example of one with a
+/// UMAT. NULL refuses, after `set_error`. [exclusive; once for each library, again only after it
+/// has refused]
 pub type lahar_plugin_adapt = Option<
     unsafe extern "C" fn(
         host: *const lahar_host_api,
@@ -430,8 +457,8 @@ pub type lahar_plugin_adapt = Option<
     ) -> *const lahar_plugin_desc,
 >;
 
-// SAFETY: the tables hold pointers to immutable data of static lifetime and function pointers; the contract above says
-// from which threads the functions are called.
+// SAFETY: the tables hold pointers to immutable data of static lifetime and function pointers; the
+// contract above says from which threads the functions are called.
 unsafe impl Sync for lahar_plugin_desc {}
 // SAFETY: as above.
 unsafe impl Sync for lahar_model_desc {}

@@ -9,8 +9,8 @@ pub struct LinkedPlugin(&'static lahar_plugin_desc);
 impl LinkedPlugin {
     /// # Safety
     ///
-    /// The table is as long as its first member says, its pointers are NULL or valid for the life of the process, and its functions do
-    /// what the ABI says.
+    /// The table is as long as its first member says, its pointers are NULL or valid for the life
+    /// of the process, and its functions do what the ABI says.
     pub const unsafe fn new(desc: &'static lahar_plugin_desc) -> Self {
         Self(desc)
     }
