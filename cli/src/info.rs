@@ -14,7 +14,8 @@ use std::process::ExitCode;
 /// Arguments of `lahar plugin info`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The plugin: a path, or the name of one in the folders of LAHAR_PLUGIN_PATH (`lahar_newtonian`)
+    /// The plugin: a path, or the name of one in the folders of LAHAR_PLUGIN_PATH
+    /// (`lahar_newtonian`)
     library: String,
     /// Only this model
     #[arg(long)]

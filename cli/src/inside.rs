@@ -1,5 +1,6 @@
-//! Runs the program once more around a plugin: with the program's own folder among those where plugins are looked for, since the adapter of
-//! UMATs stands there, and so that a library that ends its process does not do so without a word.
+//! Runs the program once more around a plugin: with the program's own folder among those where
+//! plugins are looked for, since the adapter of UMATs is there, and so that the end of the process
+//! by a library is reported.
 
 use crate::CANNOT;
 use crate::check::process::Ending;
@@ -7,7 +8,7 @@ use std::env;
 use std::os::unix::process::CommandExt;
 use std::process::{Command, ExitCode, ExitStatus};
 
-/// The option that tells the inner run from the outer one.
+/// The option that marks the inner run.
 pub const FLAG: &str = "--inside";
 
 /// The same command in a child process; says how it ended if the plugin ended it.
@@ -19,7 +20,7 @@ pub fn watched() -> Result<ExitCode, String> {
     }
 }
 
-/// The same command in place of this process, which debuggers follow.
+/// Replaces this process by the same command, which debuggers follow.
 pub fn instead() -> Result<ExitCode, String> {
     Err(format!("this program cannot be run again: {}", again()?.exec()))
 }

@@ -1,4 +1,5 @@
-//! The command line of lahar. `lahar plugin ...` serves authors of constitutive models; cli/README.md tells how.
+//! The command line of lahar. `lahar plugin ...` serves authors of constitutive models; see
+//! cli/README.md.
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stderr)] // a command line talks to the terminal
 

@@ -9,12 +9,14 @@ use std::sync::Arc;
 /// A library, the model that is meant, and its parameter values.
 #[derive(Args, Clone)]
 pub struct Choice {
-    /// The plugin: a path, or the name of one in the folders of LAHAR_PLUGIN_PATH (`lahar_newtonian`)
+    /// The plugin: a path, or the name of one in the folders of LAHAR_PLUGIN_PATH
+    /// (`lahar_newtonian`)
     pub library: String,
     /// Only this model; all of the library if none is named
     #[arg(long)]
     pub model: Option<String>,
-    /// The value of a parameter, of a choice its label or number; the others take their default or typical values
+    /// The value of a parameter, of a choice its label or number; the others take their default or
+    /// typical values
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 }
@@ -66,24 +68,24 @@ pub fn values(model: &'static Model, set: &[String]) -> Result<Values, String> {
         let (key, value) = text.split_once('=').ok_or_else(|| {
             format!("expected `--set key=value`, got `{text}`; write for example --set {text}=1e6")
         })?;
-        let place = model.parameters.iter().position(|p| p.key == key).ok_or_else(|| {
+        let index = model.parameters.iter().position(|p| p.key == key).ok_or_else(|| {
             let what = format!("parameter of `{}`", model.name);
             let known = model.parameters.iter().map(|p| p.key);
             Error::unknown_name(&what, key, known).to_string()
         })?;
-        values[place].1 = parse(&model.parameters[place], value)?;
+        values[index].1 = parse(&model.parameters[index], value)?;
     }
     match values.iter().find(|(_, value)| value.is_nan()) {
         None => Ok(values),
         Some((key, _)) => Err(format!(
-            "the model `{}` requires `{key}` and tells no typical value of it; give one by --set {key}=...",
+            "the model `{}` requires `{key}` and gives no typical value of it; give one by --set {key}=...",
             model.name
         )),
     }
 }
 
-/// The default, or of a required parameter a typical value: what the author gives, else the middle of the advised bounds.
-/// NaN if there is none.
+/// The default, or of a required parameter a typical value: what the author gives, else the middle
+/// of the advised bounds. NaN if there is none.
 fn typical(p: &Parameter) -> f64 {
     let advised = p.default >= p.advised_min && p.default <= p.advised_max;
     let allowed = p.default >= p.hard_min && p.default <= p.hard_max;
@@ -101,8 +103,8 @@ fn typical(p: &Parameter) -> f64 {
 }
 
 fn parse(p: &Parameter, text: &str) -> Result<f64, String> {
-    if let Some(place) = p.choices.iter().position(|label| *label == text) {
-        return Ok(place as f64);
+    if let Some(index) = p.choices.iter().position(|label| *label == text) {
+        return Ok(index as f64);
     }
     text.trim().parse().map_err(|_| {
         let expected = match p.choices.as_slice() {

@@ -1,4 +1,5 @@
-//! Material points outside a world: what a model is given, what it gives, and how a point moves on, all as the engine does it.
+//! Material points outside a world: what a model is given, what it gives, and how a point moves on,
+//! all as the engine does it.
 
 use lahar::error::Result;
 use lahar::material::{Input, Kinematics, Material, Model, Rotation, StressBatch};
@@ -6,9 +7,9 @@ use lahar::tensor::{Mat3, rotate, rotation_between, step_rotation, symmetric, sy
 use lahar_plugin_abi as abi;
 use std::sync::Arc;
 
-/// Grid spacing that models are told [m].
+/// Grid spacing that models are given [m].
 const ELEMENT_LENGTH: f64 = 0.1;
-/// Temperature that models are told [K].
+/// Temperature that models are given [K].
 const TEMPERATURE: f64 = 293.15;
 
 /// A material point between steps.
@@ -54,7 +55,8 @@ pub struct Got {
     pub state: Vec<f64>,
     /// Wave speed [m/s].
     pub wave_speed: f64,
-    /// Diffusivity [m^2/s], energy [J/m^3] and factor on the time step, those that the model declares.
+    /// Diffusivity [m^2/s], energy [J/m^3] and factor on the time step, those that the model
+    /// declares.
     pub others: Vec<f64>,
     /// One of `LAHAR_POINT_*`.
     pub status: i32,
@@ -88,7 +90,7 @@ fn row_major(m: &Mat3) -> [f64; 9] {
     std::array::from_fn(|c| m[(c / 3, c % 3)])
 }
 
-/// Rows of a matrix, as the engine's kernels want them.
+/// Rows of a matrix, as the engine's kernels take them.
 fn rows(m: &Mat3) -> [[f64; 3]; 3] {
     std::array::from_fn(|a| std::array::from_fn(|b| m[(a, b)]))
 }
@@ -168,7 +170,7 @@ impl Point {
         }
     }
 
-    /// What the model is given to make a first state or to tell a wave speed.
+    /// What the model is given to derive a first state or a wave speed.
     pub fn at_rest(&self, model: &Model) -> Given {
         self.given(model, &Mat3::zeros(), 1e-3)
     }
@@ -204,7 +206,8 @@ pub fn work(start: &[f64; 6], end: &[f64; 6], strain: &[f64; 6]) -> f64 {
 }
 
 impl Given {
-    /// The same of a material that was turned by `r`, and the engine turned stress and state with it.
+    /// The same of a material that was turned by `r`, and the engine turned stress and state with
+    /// it.
     pub fn turned(&self, model: &Model, r: &Mat3) -> Self {
         Self {
             strain: rotate(r, self.strain),
@@ -214,7 +217,8 @@ impl Given {
         }
     }
 
-    /// The same with `strain` [-] more in the step; the deformation gradient takes it on top of the rest, the density goes with it.
+    /// The same with `strain` [-] more in the step; the deformation gradient takes it on top of the
+    /// rest, the density goes with it.
     pub fn strained(&self, model: &Model, strain: &[f64; 6]) -> Self {
         let mut out = self.clone();
         for c in 0..6 {

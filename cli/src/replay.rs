@@ -14,7 +14,8 @@ use std::process::ExitCode;
 pub struct Arguments {
     /// The capsule, a file `lahar-capsule-....json` that a failed step has written
     capsule: PathBuf,
-    /// The plugin that is to answer, a path or a name; if none is given, the file that the capsule names
+    /// The plugin that is to answer, a path or a name; if none is given, the file that the capsule
+    /// names
     #[arg(long)]
     plugin: Option<String>,
     /// Prints JSON
@@ -22,7 +23,8 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Prints what the model was given, what it answered, and what it answers now. Succeeds if that is the same.
+/// Prints what the model was given, what it answered, and what it answers now. Succeeds if that is
+/// the same.
 pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
     let capsule = Capsule::read(&arguments.capsule).map_err(|e| e.to_string())?;
     let library = match arguments.plugin.as_deref().unwrap_or(&capsule.plugin_path) {

@@ -1,4 +1,5 @@
-//! `lahar plugin umat-build`: makes a library that the UMAT adapter can load of Fortran and C sources.
+//! `lahar plugin umat-build`: makes a library that the UMAT adapter can load of Fortran and C
+//! sources.
 
 use crate::say;
 use clap::Args;
@@ -10,7 +11,8 @@ use std::process::ExitCode;
 /// Arguments of `lahar plugin umat-build`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Sources with a UMAT or VUMAT and what it calls: Fortran in fixed form (.f, .for) and free form (.f90), C (.c), objects (.o)
+    /// Sources with a UMAT or VUMAT and what it calls: Fortran in fixed form (.f, .for) and free
+    /// form (.f90), C (.c), objects (.o)
     #[arg(required = true)]
     sources: Vec<PathBuf>,
     /// The library; else lib<first source>.so in the current folder

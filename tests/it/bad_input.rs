@@ -1,4 +1,5 @@
-//! Bad input from C: `tests/c/null_arguments.c`, `bad_input.c`, `bad_methods.c` and `bad_conditions.c` beside it.
+//! Bad input from C: `tests/c/null_arguments.c`, `bad_input.c`, `bad_methods.c` and
+//! `bad_conditions.c` beside it.
 
 use super::compiler::{program, read, run};
 use super::header::{is_pointer, prototypes};

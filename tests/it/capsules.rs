@@ -18,7 +18,8 @@ fn context_with(plugin: &str) -> Arc<Context> {
     context
 }
 
-/// The error of a step in which the particle with id 7 of a block that is squeezed fails, the third step.
+/// The error of a step in which the particle with id 7 of a block that is squeezed fails, the third
+/// step.
 fn fail(context: &Arc<Context>, model: &str) -> Error {
     let material = Material::new(context, model, &[("second", 2.5)]).unwrap();
     let options = Options { dimension: 2, spacing: 0.1, ..Options::default() };
@@ -157,7 +158,7 @@ fn capsules_are_written_where_the_host_asked_for_them_and_nowhere_else() {
         assert!(error.message.contains(name), "{error}");
         assert_eq!(context.capsule_folder(), Some(folder.canonicalize().unwrap()));
     }
-    // The folder goes away: the error is that of the model, and the log tells of the file.
+    // The folder goes away: the error is that of the model, and the file is in the log.
     fs::remove_dir_all(&folder).unwrap();
     let lines = Arc::new(Mutex::new(String::new()));
     let sink = Arc::clone(&lines);

@@ -137,7 +137,8 @@ fn typical(context: &Context, model: &Model) -> Arc<Material> {
     Material::new(context, model.name, &values).unwrap()
 }
 
-/// A digest of all fields of a column of each shipped model after some steps, and of what the extensions give.
+/// A digest of all fields of a column of each shipped model after some steps, and of what the
+/// extensions give.
 fn digest() -> String {
     let context = context(1);
     let mut hash = DefaultHasher::new();

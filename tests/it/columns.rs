@@ -1,4 +1,5 @@
-//! A column of each shipped model stands under its weight, with typical parameters and far outside those that are advised.
+//! A column of each shipped model stands under its weight, with typical parameters and far outside
+//! those that are advised.
 
 use crate::setup::{a_box, context_of, fill, read, world, write};
 use crate::support::shipped;
@@ -109,8 +110,8 @@ fn a_column_of_each_model_comes_to_rest_under_its_weight() {
             model.name,
             totals.kinetic_energy / fall
         );
-        // The mean over the volume is half the weight over the area, by the balance of moments, for any material at rest; a gas has the
-        // pressure of its box beside it.
+        // The mean over the volume is half the weight over the area, by the balance of moments, for
+        // any material at rest; a gas has the pressure of its box beside it.
         let weight = 0.5 * totals.mass * GRAVITY / 0.2;
         let gas = model.input(Input::InternalEnergy).is_some();
         let expected = if gas { -GAS_PRESSURE } else { -weight };
@@ -134,7 +135,8 @@ fn a_column_of_each_model_stays_finite_at_twice_the_advised_bounds() {
                 values.push((parameter.key, value));
                 match column(context, model, &values) {
                     Ok(_) => runs += 1,
-                    // Values that do not go together are refused before anything runs, with a reason.
+                    // Values that do not go together are refused before anything runs, with a
+                    // reason.
                     Err((Status::OutOfBounds, text)) if !text.is_empty() => {
                         println!("{}: {} = {value}: {text}", model.name, parameter.key);
                         refused += 1;

@@ -1,4 +1,5 @@
-//! Statics by dynamics, and conditions on nodes and particles: what each does is compared with a closed form.
+//! Statics by dynamics, and conditions on nodes and particles: what each does is compared with a
+//! closed form.
 
 use std::sync::Arc;
 
@@ -18,7 +19,8 @@ use crate::setup::{a_box, context, context_with, elastic, fill, read, world, wri
 
 const EVERYWHERE: BoxRegion = BoxRegion { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
 
-/// Linear FLIP or quadratic APIC in two dimensions, with the walls where each wants them: on node planes, on half-cell planes.
+/// Linear FLIP or quadratic APIC in two dimensions, with the walls where each needs them: on node
+/// planes, on half-cell planes.
 fn options(shape: ShapeKind, h: f64) -> Options {
     let linear = shape == ShapeKind::Linear;
     let shift = if linear { 0.0 } else { 0.5 * h };
@@ -130,7 +132,8 @@ fn a_bar_that_is_pulled_by_its_end_answers_with_its_stiffness() {
         let wall = slip(&mut world, &[(0, 1, 0.0), (1, 1, 0.0), (1, -1, h)])[0];
         let body =
             fill(&mut world, &material, &a_box([0.0; 3], [length, h, 0.0]), 1000.0, [0.0; 3]);
-        // the nodes from the end of the bar outwards; with quadratic shapes the last half cell inside of it too
+        // the nodes from the end of the bar outwards; with quadratic shapes the last half cell
+        // inside of it too
         let reach = if shape == ShapeKind::Linear { 0.0 } else { 0.5 * h };
         let velocity = table(&[0.0, 0.1, 0.2], &[[0.0; 3], [moved / 0.1, 0.0, 0.0], [0.0; 3]]);
         let region = BoxRegion { min: [length - reach, -1.0, 0.0], max: [f64::INFINITY; 3] };
@@ -150,7 +153,8 @@ fn a_bar_that_is_pulled_by_its_end_answers_with_its_stiffness() {
             "{shape:?} {order:?}: force {force:?}, support {support:?}, stress {middle}, closed form {expected}"
         );
         let (force, support) = (force[0] / h, support[0] / h);
-        // quadratic shapes that walls leave as they are make the bar about 0.34 h shorter at either end
+        // quadratic shapes that walls leave as they are make the bar about 0.34 h shorter at either
+        // end
         let gate = if shape == ShapeKind::Linear { 2e-3 } else { 0.05 };
         assert!((force / expected - 1.0).abs() < gate, "{shape:?}: {force} against {expected}");
         assert!((force - middle).abs() < 2e-3 * expected, "{force} against {middle}");
@@ -158,7 +162,8 @@ fn a_bar_that_is_pulled_by_its_end_answers_with_its_stiffness() {
     }
 }
 
-/// A bar of one row of cells along x, two particles a cell along it and `rows` across, that say to be `stretch` times as wide as they are.
+/// A bar of one row of cells along x, two particles a cell along it and `rows` across, that say to
+/// be `stretch` times as wide as they are.
 fn bar(
     world: &mut World,
     material: &Arc<Material>,
@@ -183,21 +188,22 @@ fn bar(
     world.add_particles(material, &arrays).expect("good particles")
 }
 
-/// Largest error of a particle's stress along the bar in [Pa] under 1 Pa, and the number of steps to equilibrium. The bar is held by
-/// a wall, or pulled at both ends.
+/// Largest error of a particle's stress along the bar in [Pa] under 1 Pa, and the number of steps
+/// to equilibrium. The bar is held by a wall, or pulled at both ends.
 fn traction_bar(shape: ShapeKind, order: StepOrder, held: bool, at_centers: bool) -> (f64, i64) {
     let context = context(1);
     let (length, h) = (1.0, 0.1);
     let mut options = Options { damping: 0.3, order, ..options(shape, h) };
     if held && shape != ShapeKind::Linear {
-        // shape functions that know of walls want them on node planes
+        // modified shape functions need walls on node planes
         (options.origin, options.wall_treatment) = ([0.0; 3], WallTreatment::Modified);
     }
     let mut world = world(&context, &options);
     let material = elastic(&context, 1e6, 0.0);
     let walls = [(1, 1, 0.0), (1, -1, h), (0, 1, 0.0)];
     slip(&mut world, &walls[..if held { 3 } else { 2 }]);
-    // edges a million times as long in the surface bring x_s to the centre; a traction a million times as small keeps the force
+    // edges a million times as long in the surface bring x_s to the centre; a traction a million
+    // times as small keeps the force
     let (rows, stretch) = if at_centers { (1, 1e6) } else { (2, 1.0) };
     let body = bar(&mut world, &material, (length, h), (rows, stretch));
     let ends = [(1, length - 0.5 * h), (-1, 0.0)];
@@ -276,7 +282,8 @@ fn a_traction_gives_exactly_its_force_while_the_body_moves() {
     }
 }
 
-/// A solid cylinder, R = 1 m, under a radial traction of 1 Pa: σ_r = σ_θ = 1 Pa everywhere (Lamé without a hole).
+/// A solid cylinder, R = 1 m, under a radial traction of 1 Pa: σ_r = σ_θ = 1 Pa everywhere (Lamé
+/// without a hole).
 #[test]
 fn a_traction_on_a_cylinder_is_one_per_radian() {
     let context = context(1);
@@ -320,8 +327,9 @@ fn column(context: &Arc<Context>, shape: ShapeKind, cells: usize) -> (World, i64
     (world, body)
 }
 
-/// Verification case D3, small strain: M = 13.4615 MPa, settlement of the top 0.0728743 m, stress at the base −196.2 kPa, K0 = 0.4285714.
-/// A hundredth of gravity keeps strains small: the closed form is that of small strains.
+/// Verification case D3, small strain: M = 13.4615 MPa, settlement of the top 0.0728743 m, stress
+/// at the base −196.2 kPa, K0 = 0.4285714. A hundredth of gravity keeps strains small: the closed
+/// form is that of small strains.
 #[test]
 fn a_column_under_a_gravity_ramp_settles_to_the_closed_form() {
     let context = context(1);
@@ -401,7 +409,8 @@ fn a_column_with_its_k0_stress_stays_as_it_is() {
     }
 }
 
-/// A fluid keeps its pressure in the volume ratio, so that a stress alone would be forgotten in the next step.
+/// A fluid keeps its pressure in the volume ratio, so that a stress alone would be forgotten in the
+/// next step.
 #[test]
 fn an_initial_stress_reaches_the_state_of_the_model() {
     let context = context(1);

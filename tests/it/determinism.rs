@@ -14,7 +14,8 @@ use lahar::world::options::Options;
 
 use crate::setup::{a_box, add_points, context_with, elastic, fill, read, world, write};
 
-/// All fields of two colliding bodies (more than 20 000 particles) after 200 steps, and the number of threads that worked.
+/// All fields of two colliding bodies (more than 20 000 particles) after 200 steps, and the number
+/// of threads that worked.
 fn state_after_a_collision(
     threads: usize,
     isa: Isa,

@@ -1,4 +1,5 @@
-//! The equations of the book and the lines that implement them: every id stands on both sides, and what the book says of tests is true.
+//! The equations of the book and the lines that implement them: every id stands on both sides, and
+//! what the book says of tests is true.
 
 use super::compiler::read;
 use super::support::repository;
@@ -8,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// An equation of a chapter.
 struct Equation {
     /// Where it is defined.
-    place: String,
+    location: String,
     /// What stands until the next heading.
     text: String,
     /// What the chapter says of symbols before its first heading.
@@ -44,13 +45,13 @@ fn every_equation_has_a_formula_units_a_source_and_tests_that_exist() {
     let tests = names_of_tests();
     let equations = equations();
     let mut breaks = Vec::new();
-    for (id, Equation { place, text, symbols }) in &equations {
-        let mut miss = |what: &str| breaks.push(format!("{place}: [{id}] {what}"));
+    for (id, Equation { location, text, symbols }) in &equations {
+        let mut miss = |what: &str| breaks.push(format!("{location}: [{id}] {what}"));
         if !text.contains("$$") {
             miss("has no formula between $$");
         }
         if !units(text) && !units(symbols) {
-            miss("tells no unit such as [m/s] or [–], nor does the chapter under `Symbols`");
+            miss("gives no unit such as [m/s] or [–], nor does the chapter under `Symbols`");
         }
         if !text.contains("Source:") && !has_year(text) {
             miss("has no source: authors (year), or `Source:`");
@@ -112,12 +113,15 @@ fn equations() -> BTreeMap<String, Equation> {
                 current =
                     line.strip_prefix("### ").and_then(|rest| ids(rest).next()).map(String::from);
                 if let Some(id) = &current {
-                    let place = format!("{path}:{}", n + 1);
-                    assert!(line.starts_with(&format!("### [{id}] ")), "{place}: ### [{id}] Title");
+                    let location = format!("{path}:{}", n + 1);
+                    assert!(
+                        line.starts_with(&format!("### [{id}] ")),
+                        "{location}: ### [{id}] Title"
+                    );
                     let (text, symbols) = (String::new(), symbols.to_string());
-                    let new = Equation { place: place.clone(), text, symbols };
+                    let new = Equation { location: location.clone(), text, symbols };
                     if let Some(old) = equations.insert(id.clone(), new) {
-                        panic!("[{id}] is defined twice: {} and {place}", old.place);
+                        panic!("[{id}] is defined twice: {} and {location}", old.location);
                     }
                 }
             } else if let Some(equation) = current.as_ref().and_then(|id| equations.get_mut(id)) {
@@ -147,8 +151,8 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// Whether a quoted name is that of a test: a sentence of five words at least, or a path of modules with one of four; functions of the C interface
-/// begin with `lahar_`.
+/// Whether a quoted name is that of a test: a sentence of five words at least, or a path of modules
+/// with one of four; functions of the C interface begin with `lahar_`.
 fn is_test(name: &str) -> bool {
     let words =
         name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_:".contains(c));

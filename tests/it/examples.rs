@@ -1,8 +1,10 @@
-//! The drivers in `examples-c` compile by the line that they document, reach their gates and are clean under valgrind.
+//! The drivers in `examples-c` compile by the line that they document, reach their gates and are
+//! clean under valgrind.
 //!
-//! Gates: columns of sand against Lube et al. 2005 and Lajeunesse et al. 2005 (P7), the dam break against Martin and Moyce 1952
-//! (F4), closed forms for the others; more columns are runs of the case P7 in `tests/cases`. A gate is what the method attains in
-//! this set-up, not what a run happens to give.
+//! Gates: columns of sand against Lube et al. 2005 and Lajeunesse et al. 2005 (P7), the dam break
+//! against Martin and Moyce 1952 (F4), closed forms for the others; more columns are runs of the
+//! case P7 in `tests/cases`. A gate is what the method attains in this set-up, not what a run
+//! happens to give.
 
 use super::compiler::{WARNINGS, library_folder, run};
 use super::support::{repository, scratch_folder, target_folder};
@@ -129,7 +131,8 @@ fn assert_flip_collapse(r: &Results, number: usize) {
     let name = |quantity| format!("case{number}_{quantity}");
     assert_collapse(r, number, 0.15);
     r.assert_close(&name("run_out_999_error"), 0.0, 0.25);
-    // A low column keeps its height at the wall; the others follow a power of a, known to a quarter.
+    // A low column keeps its height at the wall; the others follow a power of a, known to a
+    // quarter.
     let height = if r.get(&name("aspect_ratio")) < 0.7 { 0.02 } else { 0.25 };
     r.assert_close(&name("height_error"), 0.0, height);
 }
@@ -197,7 +200,8 @@ fn the_grid_holds_the_mass_and_momentum_of_its_particles_and_follows_them() {
     for axis in ["x", "y"] {
         let momentum = r.get(&format!("momentum_of_particles_{axis}"));
         r.assert_close(&format!("momentum_of_nodes_{axis}"), momentum, 1e-12 * mass * speed);
-        // A disc that flies does not turn: its velocity is that of the throw, less g t; round-off of 500 steps.
+        // A disc that flies does not turn: its velocity is that of the throw, less g t; round-off
+        // of 500 steps.
         let exact = r.get(&format!("exact_velocity_{axis}"));
         r.assert_close(&format!("middle_velocity_{axis}"), exact, 1e-10);
         r.assert_close(&format!("rim_velocity_{axis}"), exact, 1e-10);
@@ -206,7 +210,7 @@ fn the_grid_holds_the_mass_and_momentum_of_its_particles_and_follows_them() {
     r.assert_close("middle_inside", 1.0, 0.0);
     r.assert_close("rim_inside", 1.0, 0.0);
     r.assert_close("above_inside", 0.0, 0.0);
-    // The grid follows: it is renewed but does not grow with the way.
+    // The grid follows: blocks are replaced, but their number does not grow with the distance.
     assert!(r.get("blocks_created") >= r.get("start_blocks"), "the disc has left its first blocks");
     r.assert_close(
         "blocks",
@@ -222,7 +226,8 @@ fn the_grid_holds_the_mass_and_momentum_of_its_particles_and_follows_them() {
 fn soil_from_the_arrays_of_a_host_rests_under_its_stresses_and_slides_when_dug() {
     let r = results(&c_program("05_host_arrays"), &[]);
     r.assert_close("mass", 2000.0, 1e-9);
-    // The stress at rest is known at the particles but for the first row of cells below the surface: h / 8 of soil.
+    // The stress at rest is known at the particles but for the first row of cells below the
+    // surface: h / 8 of soil.
     r.assert_in("rest_stress_change_over_base_stress", 0.0, 0.0125);
     r.assert_in("rest_kinetic_over_potential", 0.0, 1e-8);
     let earth_pressure = r.get("earth_pressure_at_rest");

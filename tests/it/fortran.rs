@@ -1,7 +1,9 @@
-//! `lahar.f90` says what `lahar.h` says, `lahar_plugin.f90` what `lahar_plugin.h` says, and both compile as strictly as gfortran can.
+//! `lahar.f90` says what `lahar.h` says, `lahar_plugin.f90` what `lahar_plugin.h` says, and both
+//! compile as strictly as gfortran can.
 //!
-//! gfortran cannot compare a `bind(c)` interface with a C prototype, so names, the order, number and kinds of arguments, the
-//! fields and sizes of structs, and the constants are compared here, by a reader that shares nothing with the generator.
+//! gfortran cannot compare a `bind(c)` interface with a C prototype, so names, the order, number
+//! and kinds of arguments, the fields and sizes of structs, and the constants are compared here, by
+//! a reader that shares nothing with the generator.
 
 use super::compiler::{self, library_folder, read, run};
 use super::support::{repository, scratch_folder, target_folder};
@@ -101,7 +103,8 @@ fn the_modules_compile_without_warnings_at_every_level_of_optimisation() {
 
 #[test]
 fn fortran_twins_print_the_numbers_of_the_c_drivers() {
-    // Traps are on: a program that leaves its own floating-point environment to lahar would end at once.
+    // Traps are on: a program that leaves its own floating-point environment to lahar would end at
+    // once.
     const TRAPS: [&str; 1] = ["-ffpe-trap=invalid,zero,overflow"];
     for (driver, arguments) in TWINS {
         let source = |language| repository("examples-c").join(format!("{driver}.{language}"));
@@ -121,7 +124,8 @@ fn the_readable_layer_has_every_condition_and_gives_the_numbers_of_c() {
     assert_eq!(c, fortran);
 }
 
-/// Compiles a Fortran program with the module, by the documented line and stricter; the path of the program.
+/// Compiles a Fortran program with the module, by the documented line and stricter; the path of the
+/// program.
 fn program(source: &Path, more: &[&str]) -> PathBuf {
     let library = library_folder();
     let folder = scratch_folder();
@@ -211,7 +215,8 @@ fn structs(code: &str) -> BTreeMap<String, Vec<Named>> {
     found
 }
 
-/// Name and kind of `const double stress[6]`: a pointer has the kind of what it points at, but a handle is "ptr".
+/// Name and kind of `const double stress[6]`: a pointer has the kind of what it points at, but a
+/// handle is "ptr".
 fn c_variable(text: &str) -> Named {
     let declarator = text.split('[').next().unwrap_or_default();
     let words: Vec<&str> = declarator.split([' ', '*']).filter(|word| !word.is_empty()).collect();

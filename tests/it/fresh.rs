@@ -1,4 +1,5 @@
-//! What the grid shows is what the particles and loads are, whatever a host changed and asked before.
+//! What the grid shows is what the particles and loads are, whatever a host changed and asked
+//! before.
 
 use std::process::Command;
 
@@ -16,7 +17,8 @@ fn equilibrium_sees_every_change_from_c() {
     run(host.env("LAHAR_PLUGIN_PATH", target_folder()));
 }
 
-/// A plane block of 1 m x 1 m and 2000 kg, under a load on its top that grows from 0 to 1 kPa in 1 s.
+/// A plane block of 1 m x 1 m and 2000 kg, under a load on its top that grows from 0 to 1 kPa in 1
+/// s.
 fn loaded_block() -> (World, i64) {
     let context = context(1);
     let material = elastic(&context, 1e6, 0.3);

@@ -1,4 +1,5 @@
-//! The C headers: they compile by themselves and together, agree with the library, and document their thread rules.
+//! The C headers: they compile by themselves and together, agree with the library, and document
+//! their thread rules.
 
 use super::compiler::{WARNINGS, library_folder, program, read, run};
 use super::support::{repository, scratch_folder};
@@ -202,7 +203,7 @@ fn the_header_declares_the_exported_functions_and_no_others() {
 }
 
 #[test]
-fn every_function_tells_its_thread_rule_in_the_line_before_it() {
+fn every_function_states_its_thread_rule_in_the_line_before_it() {
     let header = read("include/lahar/lahar.h");
     let lines: Vec<&str> = header.lines().collect();
     let mut found = 0;

@@ -1,4 +1,5 @@
-//! What a step must keep: mass, momentum, angular momentum, the stress of a rigid rotation; and what must lose it.
+//! What a step must conserve: mass, momentum, angular momentum, the stress of a rigid rotation; and
+//! what must lose it.
 
 use lahar::boundary::{BoxRegion, PrescribedVelocity, Table, Wall, WallKind};
 use lahar::material::Material;
@@ -85,8 +86,9 @@ fn apic_keeps_angular_momentum_and_pic_visibly_loses_it() {
     assert!(pic < 0.5, "PIC must lose it, but keeps {pic}");
 }
 
-/// Stress of a prestressed block after a quarter turn in 1000 steps, prescribed at the nodes; largest defect of R σ Rᵀ over
-/// the largest stress. Without `rotates` the material is one that ignores the rotation.
+/// Stress of a prestressed block after a quarter turn in 1000 steps, prescribed at the nodes;
+/// largest defect of R σ Rᵀ over the largest stress. Without `rotates` the material is one that
+/// ignores the rotation.
 fn spin_defect(dimension: usize, rotates: bool) -> f64 {
     let context = context(1);
     let material = if rotates {
@@ -202,7 +204,8 @@ fn f_bar_gives_the_particles_of_a_cell_one_rate() {
     }
 }
 
-/// Largest difference between the growths of two particles of a cell in one step, over the largest growth.
+/// Largest difference between the growths of two particles of a cell in one step, over the largest
+/// growth.
 fn spread_of_growth(options: &Options, f_bar: bool) -> f64 {
     let context = context(2);
     let material = elastic(&context, 1e4, 0.3);
@@ -232,7 +235,8 @@ fn spread_of_growth(options: &Options, f_bar: bool) -> f64 {
     patches.values().map(range).fold(0.0, f64::max) / largest
 }
 
-/// Positions and stresses of a block of linear shapes that a prescribed velocity drives onto a wall on a node plane, and behind it.
+/// Positions and stresses of a block of linear shapes that a prescribed velocity drives onto a wall
+/// on a node plane, and behind it.
 fn driven_onto_a_wall(wall_treatment: WallTreatment) -> Vec<u64> {
     let context = context(1);
     let material = elastic(&context, 1e4, 0.3);

@@ -1,4 +1,5 @@
-//! Every kernel equals the textbook: instruction set × dimension × shape × transfer × order, random particles, walls, damping and gravity.
+//! Every kernel equals the textbook: instruction set × dimension × shape × transfer × order, random
+//! particles, walls, damping and gravity.
 
 use lahar::boundary::{Wall, WallKind};
 use lahar::context::Context;
@@ -72,7 +73,8 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs())) / largest
 }
 
-/// Friction and slip below, separating and sticky above; on node planes where they modify the shape functions.
+/// Friction and slip below, separating and sticky above; on node planes where they modify the shape
+/// functions.
 fn walls(options: &Options) -> Vec<Wall> {
     let kinds = [WallKind::Friction, WallKind::Slip, WallKind::Separating, WallKind::Sticky];
     let (modified, d) = (options.wall_treatment == WallTreatment::Modified, options.dimension);
@@ -174,7 +176,8 @@ fn one_step_agrees<const D: usize>(options: &Options, isa: Isa, threads: usize, 
     }
 }
 
-/// Calls `run` for every dimension (axial symmetry included) × shape × treatment of walls × transfer × order that goes together.
+/// Calls `run` for every dimension (axial symmetry included) × shape × treatment of walls ×
+/// transfer × order that goes together.
 fn table_of(orders: &[StepOrder], run: &dyn Fn(&Options)) {
     use {ShapeKind as S, TransferKind as T, WallTreatment as W};
     for (dimension, axisymmetric) in [(2, false), (3, false), (2, true)] {

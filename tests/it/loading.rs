@@ -150,13 +150,13 @@ fn a_library_that_is_no_plugin_is_offered_to_the_adapter() {
 }
 
 #[test]
-fn the_adapter_itself_is_told_from_what_it_adapts() {
+fn the_adapter_itself_is_distinguished_from_what_it_adapts() {
     let texts = &["this is an adapter", "give the library with the UMAT"];
     expect::<()>(Err(refusal(&plugin_path("umat"))), Status::PluginInvalid, texts);
 }
 
 #[test]
-fn a_model_that_may_print_or_end_the_process_is_told_of_when_it_is_loaded() {
+fn a_model_that_may_print_or_end_the_process_is_reported_when_it_is_loaded() {
     let context = context();
     let lines = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&lines);
@@ -164,8 +164,8 @@ fn a_model_that_may_print_or_end_the_process_is_told_of_when_it_is_loaded() {
     context.load_plugin(&bad_plugin("legacy")).unwrap();
     context.flush_log();
     let lines = lines.lock().unwrap();
-    let told = |text: &str| lines.iter().any(|(l, t)| *l == 1 && t.contains(text));
-    assert!(told("`minimal` may end the process") && told("`minimal` may print"), "{lines:?}");
+    let warned = |text: &str| lines.iter().any(|(l, t)| *l == 1 && t.contains(text));
+    assert!(warned("`minimal` may end the process") && warned("`minimal` may print"), "{lines:?}");
 }
 
 #[test]
@@ -176,7 +176,8 @@ fn plugins_are_found_where_the_library_is_installed() {
     fs::copy(library_folder().join("liblahar.so"), installed.join("lib/liblahar.so")).unwrap();
     fs::copy(plugin_path("newtonian"), plugins.join("liblahar_newtonian.so")).unwrap();
     let program = program(&repository("tests/c/installed.c"));
-    // A library that is found through the environment comes before the one that the program was linked with.
+    // A library that is found through the environment comes before the one that the program was
+    // linked with.
     let found = run(Command::new(&program)
         .env_remove("LAHAR_PLUGIN_PATH")
         .env("LD_PRELOAD", installed.join("lib/liblahar.so")));

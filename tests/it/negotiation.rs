@@ -1,4 +1,5 @@
-//! The negotiation when a plugin is loaded: a table for each of its rules, right but for one thing, and the words that say so.
+//! The negotiation when a plugin is loaded: a table for each of its rules, right but for one thing,
+//! and the words that say so.
 
 use crate::plugins::{context, expect};
 use crate::register::{linked, spoiled};

@@ -1,4 +1,5 @@
-//! Homogeneous motions, prescribed at the nodes: every measure of strain against its closed form, in 2D and 3D.
+//! Homogeneous motions, prescribed at the nodes: every measure of strain against its closed form,
+//! in 2D and 3D.
 
 use std::ffi::CStr;
 
@@ -41,7 +42,7 @@ fn stress(block: &Block) -> Mat3 {
     tensor(block, "stress", 1e-9 * E)
 }
 
-/// Keeps stress and a tensor of its own as the engine turned them.
+/// Leaves stress and a tensor of its own as the engine turned them.
 struct Follower;
 
 static FOLLOWER: Plugin =
@@ -85,7 +86,8 @@ fn sheared(dimension: usize, model: &str, gamma: f64, steps: usize) -> Mat3 {
     stress(&block)
 }
 
-/// The closed form of Dienes, xy and xx, by integrating dσ/dγ = Ω σ − σ Ω + 2 D, Ω = dR/dγ Rᵀ (Runge and Kutta's fourth order): R turns by −atan(γ/2).
+/// The closed form of Dienes, xy and xx, by integrating dσ/dγ = Ω σ − σ Ω + 2 D, Ω = dR/dγ Rᵀ
+/// (Runge and Kutta's fourth order): R turns by −atan(γ/2).
 fn dienes_integrated(gamma: f64) -> (f64, f64) {
     let rate = |g: f64, [xx, xy]: [f64; 2]| {
         let w = 0.5 / (1.0 + 0.25 * g * g); // yy = −xx
@@ -146,7 +148,8 @@ fn the_closed_form_of_dienes_is_the_integral_of_the_green_naghdi_rate() {
     }
 }
 
-/// Runs a shear with two numbers of steps: the error is of first order, and what is left when it is taken out is of second order.
+/// Runs a shear with two numbers of steps: the error is of first order, and what is left when it is
+/// taken out is of second order.
 fn converges(dimension: usize, model: &str, gamma: f64, (xy, xx): (f64, f64)) {
     let error = |s: Mat3| {
         let [a, b, c] = [s[(0, 1)] - xy, s[(0, 0)] - xx, s[(1, 1)] + xx];
@@ -167,7 +170,7 @@ fn jaumann_stress_in_simple_shear_oscillates_and_green_naghdi_stress_follows_die
         converges(dimension, "linear_elastic", gamma, jaumann);
         converges(dimension, "linear_elastic_green_naghdi", gamma, dienes(gamma));
     }
-    // the two rates are as different as the literature says, so the test tells them apart
+    // the two rates are as different as the literature says, so the test distinguishes them
     assert!((f64::sin(3.0) - 0.1411).abs() < 1e-4 && dienes(3.0).0 > 1.5);
 }
 
@@ -226,7 +229,8 @@ fn the_volume_of_what_carries_f_is_that_of_f_in_any_motion() {
     }
 }
 
-/// Stresses a block, turns it by a right angle in 1000 steps, and gives the largest defect of R σ Rᵀ over the largest stress.
+/// Stresses a block, turns it by a right angle in 1000 steps, and gives the largest defect of R σ
+/// Rᵀ over the largest stress.
 fn turn_defect(dimension: usize, model: &str, isa: Isa, axis: Vector3<f64>) -> f64 {
     let mut block = block(dimension, model, isa);
     if model == "follower" {

@@ -1,4 +1,5 @@
-//! Particles stand in the runs of their blocks, whichever way they came there, and keep their ids.
+//! Particles are stored in the runs of their blocks, however they came there, and their ids do not
+//! change.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,8 @@ fn block(x: &[f64]) -> Vec<i64> {
     x.iter().map(|x| ((x / H - 0.5).floor() as i64).div_euclid(4)).collect()
 }
 
-/// For each block of a body the ids of its particles, ascending; checks that a block's particles stand together, in block order.
+/// For each block of a body the ids of its particles, ascending; checks that a block's particles
+/// stand together, in block order.
 fn blocks_of(world: &World, body: i64) -> BTreeMap<Vec<i64>, Vec<i64>> {
     let d = world.options().dimension;
     let x = world.field_data(body, "position").expect("a body");
@@ -27,9 +29,9 @@ fn blocks_of(world: &World, body: i64) -> BTreeMap<Vec<i64>, Vec<i64>> {
     for (k, id) in world.ids(body).expect("a body").iter().enumerate() {
         let at: Vec<f64> = (0..d).map(|c| x.data[c * x.stride + k]).collect();
         let key = block(&at);
-        let place = number[&key[..]];
-        assert!(last <= place, "particle {id} stands behind those of a later block");
-        last = place;
+        let index = number[&key[..]];
+        assert!(last <= index, "particle {id} stands behind those of a later block");
+        last = index;
         found.entry(key).or_default().push(*id);
     }
     found.values_mut().for_each(|ids| ids.sort_unstable());
@@ -67,12 +69,13 @@ fn check_against_a_new_world(old: &World) {
     }
 }
 
-/// Places that hold another particle than before.
+/// Number of indices that hold another particle than before.
 fn changed(world: &World, body: i64, before: &[i64]) -> usize {
     world.ids(body).expect("a body").iter().zip(before).filter(|(a, b)| a != b).count()
 }
 
-/// Moves resting particles of two bodies about by hand; a step of a resting world puts them into their blocks and does nothing else.
+/// Moves resting particles of two bodies about by hand; a step of a resting world puts them into
+/// their blocks and does nothing else.
 fn shuffle(dimension: usize, threads: usize, count: usize) {
     let context = context(threads);
     let material = elastic(&context, 1e4, 0.3);
@@ -121,7 +124,7 @@ fn shuffle(dimension: usize, threads: usize, count: usize) {
         }
         if round % 8 < 2 {
             let changed = changed(&world, 0, &before);
-            assert!(changed > 0 && changed < count / 2, "{changed} of {count} changed places");
+            assert!(changed > 0 && changed < count / 2, "{changed} of {count} changed indices");
         }
     }
 }

@@ -1,7 +1,8 @@
-//! The driver of an author, `examples-c/20_own_material`: a column collapses with a model that was compiled from a template.
+//! The driver of an author, `examples-c/20_own_material`: a column collapses with a model that was
+//! compiled from a template.
 //!
-//! Gates: what is known of clay of strength c under its weight: it stands if rho g H / c < 2, and far above it becomes a layer that runs at
-//! least as far as a shallow one at rest (Nye 1952).
+//! Gates: what is known of clay of strength c under its weight: it stands if rho g H / c < 2, and
+//! far above it becomes a layer that runs at least as far as a shallow one at rest (Nye 1952).
 
 use super::compiler::{WARNINGS, library_folder, read, run};
 use super::support::{repository, scratch_folder};
@@ -60,7 +61,8 @@ fn a_column_with_a_model_of_ones_own_collapses_in_c_and_in_fortran_alike() {
     assert_eq!(c.len(), 25);
     assert_eq!(c["particles"], 2304.0);
     let shallow = c["run_out_of_a_shallow_layer"];
-    // Inertia: the potential energy of the start has gone into more than the slow flow that the layer follows from.
+    // Inertia: the potential energy of the start has gone into more than the slow flow that the
+    // layer follows from.
     let ratio = c["output5_run_out"] / shallow;
     assert!((1.0..1.6).contains(&ratio), "{ratio} times as far as a shallow layer");
     assert!(c["kinetic_over_start_potential"] < 1e-6, "the clay has not come to rest");

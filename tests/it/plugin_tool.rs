@@ -1,5 +1,5 @@
-//! `lahar plugin`: every shipped plugin keeps the rules, every bad one is caught by the right rule with the right sentence, and the
-//! tool outlives them all.
+//! `lahar plugin`: every shipped plugin follows the rules, every bad one is caught by the right
+//! rule with the right sentence, and the tool outlives them all.
 
 use crate::capsules::nan_capsule;
 use crate::support::{bad_plugin, plugin_path, repository, scratch_folder, shipped, target_folder};
@@ -102,7 +102,8 @@ fn every_bad_plugin_is_caught_by_its_rule() {
     catch("prints", "prints", &["the library prints", "first `stress update of 1 points`"]);
 }
 
-/// A bad plugin fails its rule with these texts, with the input where there was one, and the rules before hold.
+/// A bad plugin fails its rule with these texts, with the input where there was one, and the rules
+/// before hold.
 fn catch(name: &str, rule: &str, texts: &[&str]) {
     let limit = if name == "hangs" { "2" } else { "60" };
     let text = output(&["check", &bad_plugin(name), "--time-limit", limit], 1);

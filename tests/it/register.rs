@@ -17,7 +17,8 @@ pub fn spoiled(
     spoil: impl FnOnce(&mut lahar_plugin_desc, &mut lahar_model_desc),
 ) -> &'static lahar_plugin_desc {
     let mut plugin = *lahar_model_linear_elastic::PLUGIN.desc();
-    // SAFETY: the table of a plugin that the SDK made holds a pointer to the table of each of its models.
+    // SAFETY: the table of a plugin that the SDK made holds a pointer to the table of each of its
+    // models.
     let mut model = unsafe { **plugin.models };
     (plugin.model_count, plugin.models) = (1, ptr::null());
     spoil(&mut plugin, &mut model);
@@ -30,7 +31,8 @@ pub fn spoiled(
 
 /// A table as a linked plugin has it.
 pub fn linked(table: &'static lahar_plugin_desc) -> LinkedPlugin {
-    // SAFETY: the table and what it points to live on, and what is spoiled in it is refused before it is used.
+    // SAFETY: the table and what it points to live on, and what is spoiled in it is refused before
+    // it is used.
     unsafe { LinkedPlugin::new(table) }
 }
 

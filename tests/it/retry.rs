@@ -1,4 +1,5 @@
-//! Steps that a material wants smaller or fails in: repeated, or refused with nothing changed.
+//! Steps in which a material asks for a smaller step or fails: repeated, or refused with nothing
+//! changed.
 
 use crate::setup::{a_box, fill, read, world};
 use crate::support::bad_plugin;
@@ -13,7 +14,8 @@ use lahar::world::options::Options;
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-/// A block that the model of a bad plugin fills, in a world that lets steps be repeated. The stable step is about 4e-3 s.
+/// A block that the model of a bad plugin fills, in a world that lets steps be repeated. The stable
+/// step is about 4e-3 s.
 fn block(plugin: &str, retries: i32, order: StepOrder) -> World {
     block_in(&Context::new(Some(2)).unwrap(), plugin, retries, order)
 }
@@ -121,7 +123,7 @@ fn without_retries_a_wish_shortens_the_next_step_and_a_failure_poisons_the_world
 }
 
 #[test]
-fn points_that_are_less_accurate_than_promised_are_told_of_once() {
+fn points_that_are_less_accurate_than_promised_are_reported_once() {
     let context = Context::new(Some(2)).unwrap();
     let mut world = block_in(&context, "unreliable", 0, StepOrder::Musl);
     let lines = Arc::new(Mutex::new(Vec::new()));
@@ -148,7 +150,8 @@ fn the_number_of_retries_is_checked() {
     }
 }
 
-/// A block on a floor, pushed from the left and loaded on top, and its forces: of the floor, of the push, of the load.
+/// A block on a floor, pushed from the left and loaded on top, and its forces: of the floor, of the
+/// push, of the load.
 fn held_block(plugin: &str, retries: i32, order: StepOrder) -> World {
     let mut world = block(plugin, retries, order);
     let kind = WallKind::Slip;

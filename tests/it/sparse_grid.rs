@@ -1,4 +1,5 @@
-//! The grid follows the material: policies agree, places far away are as good as any, flights cost no memory.
+//! The grid follows the material: policies agree, positions far away are as good as any, flights
+//! cost no memory.
 
 use lahar::background::GridPolicy;
 use lahar::boundary::{Wall, WallKind};
@@ -81,7 +82,8 @@ fn leaving_a_static_box_is_an_error_that_changes_nothing() {
     assert_eq!((time, before), (world.time(), bits(&world, &["position"])));
 }
 
-/// Stresses of a squeezed block after 200 steps, started `offset` cells away from the origin of the grid.
+/// Stresses of a squeezed block after 200 steps, started `offset` cells away from the origin of the
+/// grid.
 fn squeezed(offset: f64) -> Vec<f64> {
     let context = context(1);
     let material = elastic(&context, 1e4, 0.3);

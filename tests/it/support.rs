@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{self, Command};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Path of a shipped plugin, `drucker_prager` for example, in the target folder of this test. A missing plugin fails.
+/// Path of a shipped plugin, `drucker_prager` for example, in the target folder of this test. A
+/// missing plugin fails.
 pub fn plugin_path(name: &str) -> String {
     let path = target_folder().join(format!("liblahar_{name}.so"));
     assert!(
@@ -53,7 +54,8 @@ pub fn scratch_folder() -> PathBuf {
     folder
 }
 
-/// Compiles `tests/bad_plugins/<name>.c` with the system's compiler into a scratch folder; the path of the library.
+/// Compiles `tests/bad_plugins/<name>.c` with the system's compiler into a scratch folder; the path
+/// of the library.
 pub fn bad_plugin(name: &str) -> String {
     let library = scratch_folder().join(format!("lib{name}.so"));
     let source = repository("tests/bad_plugins").join(format!("{name}.c"));
@@ -70,8 +72,8 @@ pub fn bad_plugin(name: &str) -> String {
     library.to_str().expect("a UTF-8 path").to_string()
 }
 
-/// Runs one test of this binary again as a child process with other environment variables; `test` is its full name.
-/// Returns whether the running process is such a child.
+/// Runs one test of this binary again as a child process with other environment variables; `test`
+/// is its full name. Returns whether the running process is such a child.
 pub fn in_child(test: &str, variables: &[(&str, &str)]) -> bool {
     const MARK: &str = "LAHAR_TEST_CHILD";
     if std::env::var(MARK).as_deref() == Ok(test) {

@@ -1,4 +1,5 @@
-//! The templates that authors copy, `plugins/template`: each is built by the line that stands in it, and all are the same model.
+//! The templates that authors copy, `plugins/template`: each is built by the line that stands in
+//! it, and all are the same model.
 
 use super::compiler::{self, library_folder, read, run};
 use super::support::{repository, scratch_folder, target_folder};
@@ -21,7 +22,8 @@ const YIELD_STRESS: f64 = 2e4;
 const VALUES: [(&str, f64); 3] =
     [("youngs_modulus", 1e7), ("poissons_ratio", 0.3), ("yield_stress", YIELD_STRESS)];
 
-/// Builds the text of a template in a folder of its own that shows `include`, by the line in its head.
+/// Builds the text of a template in a folder of its own that shows `include`, by the line in its
+/// head.
 pub fn build(name: &str, text: &str) -> PathBuf {
     let (_, start, strict) = COMPILED.iter().find(|(n, ..)| *n == name).expect("a template");
     let folder = scratch_folder();
@@ -41,7 +43,8 @@ fn documented_line<'a>(text: &'a str, start: &str) -> &'a str {
     line
 }
 
-/// The Rust template, by its line, into a target folder of its own: others may be loading the library of the workspace.
+/// The Rust template, by its line, into a target folder of its own: others may be loading the
+/// library of the workspace.
 fn build_rust() -> PathBuf {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rust_template");
     let text = read("plugins/template/src/lib.rs");
@@ -203,7 +206,7 @@ fn all_templates_are_built_by_their_own_lines_and_give_equal_results_bit_for_bit
         let symbols: Vec<_> = nm.lines().filter_map(|l| l.split_whitespace().last()).collect();
         assert_eq!(symbols, ["lahar_plugin_entry_v1"], "{name}");
 
-        // It keeps the rules of the conformance suite.
+        // It follows the rules of the conformance suite.
         let mut lahar = Command::new(target_folder().join("lahar"));
         run(lahar.args(["plugin", "check"]).arg(&library));
 
@@ -253,9 +256,9 @@ fn what_is_not_a_number_fails_alone_and_values_without_moduli_are_refused_by_all
 fn an_exception_of_a_cplusplus_model_becomes_an_error_with_its_text() {
     let name = "own_material.cpp";
     let text = read("plugins/template/own_material.cpp");
-    let with = |place: &str, statement: &str| {
-        let changed = text.replacen(place, &format!("{place}\n{statement}"), 1);
-        assert_ne!(changed, text, "the template has no `{place}`");
+    let with = |anchor: &str, statement: &str| {
+        let changed = text.replacen(anchor, &format!("{anchor}\n{statement}"), 1);
+        assert_ne!(changed, text, "the template has no `{anchor}`");
         context(&build(name, &changed))
     };
     let update = "void update(const Start &start, End &end) const {";

@@ -1,4 +1,5 @@
-//! The rules of the house that a program can check. Each test names the file and line that breaks one.
+//! The rules of the repository that a program can check. Each test names the file and line that
+//! breaks one.
 
 use super::compiler::read;
 use super::support::repository;
@@ -6,8 +7,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Folders whose Rust files may hold `unsafe`: the two C boundaries, the lanes, and the plugin ABI with its adapters.
-/// Tests may too, since they stand in for C hosts and plugins; their count is held like that of the others.
+/// Folders whose Rust files may hold `unsafe`: the two C boundaries, the lanes, and the plugin ABI
+/// with its adapters. Tests may too, since they stand in for C hosts and plugins; their count is
+/// held like that of the others.
 const UNSAFE_FOLDERS: [&str; 6] =
     ["src/ffi/", "src/plugin/", "src/simd/", "plugins/abi/", "plugins/sdk/", "plugins/umat/"];
 
@@ -113,7 +115,8 @@ fn nothing_is_left_to_do_in_the_sources() {
     assert!(breaks.is_empty(), "unfinished:\n{}", breaks.join("\n"));
 }
 
-/// The rooms of `src` from the ground up. A file names its own line and those above it, nothing below.
+/// The layers of `src` from the ground up. A file uses its own line and those above it, nothing
+/// below.
 const ROOMS: [&[&str]; 16] = [
     &["error", "choice"],
     &["simd"],
@@ -154,7 +157,8 @@ fn arrows_between_the_rooms_of_the_engine_point_down() {
     assert!(breaks.is_empty(), "arrows that point up:\n{}", breaks.join("\n"));
 }
 
-/// What bundles all parts of a world, and who may take it: the orders, and the integrator that calls them.
+/// What bundles all parts of a world, and who may take it: the orders, and the integrator that
+/// calls them.
 #[test]
 fn stages_take_parts_and_not_the_whole() {
     let whole = ["src/step/mod.rs", "src/step/parts.rs", "src/step/integrate.rs"];
@@ -286,7 +290,7 @@ fn offending_lines(paths: &[String], breaks: impl Fn(&[&str], usize) -> bool) ->
     found
 }
 
-/// The line without string literals' contents being told apart, but without its comment.
+/// The line without its comment; contents of string literals are not recognised.
 fn code(line: &str) -> &str {
     line.split("//").next().unwrap_or_default()
 }

@@ -1,4 +1,5 @@
-//! UMATs in worlds: built by the command line, loaded like plugins, compared with the plugins of the same laws.
+//! UMATs in worlds: built by the command line, loaded like plugins, compared with the plugins of
+//! the same laws.
 
 use crate::setup::{a_box, fill, read, world, write};
 use crate::support::{in_child, plugin_path, repository, scratch_folder, target_folder};
@@ -96,7 +97,8 @@ fn a_block_of_an_elastic_umat_moves_as_that_of_the_plugin() {
             umat.step(Some(0.5 * expected)).unwrap();
             plugin.step(Some(0.5 * expected)).unwrap();
         }
-        // Round-off grows over the steps; a wrong order of shears, factor or turn would show in the first digit.
+        // Round-off grows over the steps; a wrong order of shears, factor or turn would show in the
+        // first digit.
         for field in ["position", "velocity", "stress"] {
             assert_close(&umat, &plugin, field, 1e-9);
         }

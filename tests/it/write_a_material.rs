@@ -1,4 +1,5 @@
-//! The chapter "Write a material": its commands are run one by one, and what it prints of their output is compared.
+//! The chapter "Write a material": its commands are run one by one, and what it prints of their
+//! output is compared.
 
 use super::compiler::{read, run};
 use super::support::{repository, scratch_folder, target_folder};
@@ -36,10 +37,10 @@ fn the_way_of_an_author_has_fewer_than_ten_commands() {
     let blocks = blocks(&read("docs/book/write_a_material.md"));
     for (section, start, end) in [("In C", "cp ", "./own"), ("In Fortran", "cp ", "./own")] {
         let of_section = blocks.iter().filter(|block| block.section == section);
-        let way: Vec<&String> = of_section.flat_map(|block| &block.commands).collect();
-        assert!(way.len() < 10 && way.len() > 4, "{section}: {way:?}");
-        assert!(way[0].starts_with(start) && way[way.len() - 1].starts_with(end));
-        assert!(way.iter().any(|command| command.contains("lahar plugin check")), "{section}");
+        let commands: Vec<&String> = of_section.flat_map(|block| &block.commands).collect();
+        assert!(commands.len() < 10 && commands.len() > 4, "{section}: {commands:?}");
+        assert!(commands[0].starts_with(start) && commands[commands.len() - 1].starts_with(end));
+        assert!(commands.iter().any(|command| command.contains("lahar plugin check")), "{section}");
     }
 }
 
@@ -80,7 +81,8 @@ fn blocks(chapter: &str) -> Vec<Block> {
     found
 }
 
-/// Every shown line must be printed, in this order, and the next one unless `...` stands between. A line that ends with `...` goes on.
+/// Every shown line must be printed, in this order, and the next one unless `...` stands between. A
+/// line that ends with `...` goes on.
 fn compare(shown: &[String], printed: &str) {
     let mut rest = printed.lines();
     let mut may_skip = false;
@@ -123,7 +125,7 @@ fn is_rounded(short: &str, full: &str) -> bool {
 }
 
 #[test]
-fn shown_output_is_told_from_other_output() {
+fn shown_output_is_distinguished_from_other_output() {
     let printed = "particles = 12\nrun_out = 2.3934\nok   loads: fine\nheight = 4.0580E-001";
     let shown = |text: &str| text.lines().map(String::from).collect::<Vec<_>>();
     compare(&shown("particles = 12\nrun_out = 2.39"), printed);

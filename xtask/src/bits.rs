@@ -31,7 +31,8 @@ const H: f64 = 0.1;
 /// those of the orders, "-" where the combination is refused.
 type Sums = BTreeMap<String, BTreeMap<String, String>>;
 
-/// Computes the sums, and compares with the file or writes it; builds what is needed unless `built`.
+/// Computes the sums, and compares with the file or writes it; builds what is needed unless
+/// `built`.
 pub fn run(write: bool, built: bool) -> std::result::Result<(), String> {
     if !built {
         setup::run(setup::Need::Tests)?;
@@ -146,8 +147,8 @@ fn of_group(isa: Isa, options: &Options) -> Result<String> {
     Ok(sums.join(" "))
 }
 
-/// The sum after [`STEPS`] steps. Of a run that fails it is that of the message: what a broken world holds is
-/// not promised.
+/// The sum after [`STEPS`] steps. Of a run that fails it is that of the message: what a broken
+/// world holds is not promised.
 fn sum_of(isa: Isa, options: &Options) -> Result<u32> {
     let mut world = build(isa, options)?;
     let mut sum = crc32fast::Hasher::new();

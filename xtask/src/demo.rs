@@ -7,7 +7,8 @@ use std::process::Command;
 
 const DRIVER: &str = "examples-c/02_column_collapse.c";
 
-/// Builds everything, compiles the driver as the README says, runs it and draws a few of its frames.
+/// Builds everything, compiles the driver as the README says, runs it and draws a few of its
+/// frames.
 pub fn run() -> Result<(), String> {
     setup::run(setup::Need::Demo)?;
     process::cargo(&["build", "--release", "--workspace"])?;

@@ -1,11 +1,14 @@
-//! `cargo xtask instructions`: how many instructions a particle costs in a step, against a committed baseline.
+//! `cargo xtask instructions`: how many instructions a particle costs in a step, against a
+//! committed baseline.
 //!
-//! Seconds of a shared machine say little, instructions repeat to a fraction of a percent. Each scene of the bench is built
-//! small and stepped on one thread under callgrind, twice with different numbers of steps; the difference is that of the steps
-//! alone. Valgrind does not know AVX-512, so that the paths are scalar and AVX2.
+//! Seconds of a shared machine say little, instructions repeat to a fraction of a percent. Each
+//! scene of the bench is built small and stepped on one thread under callgrind, twice with
+//! different numbers of steps; the difference is that of the steps alone. Valgrind does not know
+//! AVX-512, so that the paths are scalar and AVX2.
 //!
-//! The baseline holds the compiler that it was made with. Another compiler makes other instructions: then the counts are
-//! shown, and nothing fails. After a change that is meant to cost more, or that costs less, `--write` makes a new baseline.
+//! The baseline holds the compiler that it was made with. Another compiler makes other
+//! instructions: then the counts are shown, and nothing fails. After a change that is meant to cost
+//! more, or that costs less, `--write` makes a new baseline.
 
 use crate::bench::scenes::{SCENES, Scene};
 use crate::{process, setup};
@@ -88,10 +91,10 @@ fn collected(scene: &Scene, path: &str, steps: u64) -> Result<(f64, f64), String
         write!(commands, "steps {steps}\nend\n").map_err(text)?;
     }
     let output = child.wait_with_output().map_err(text)?;
-    let (printed, told) =
+    let (printed, report) =
         (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     if !output.status.success() {
-        return Err(format!("{name} ended with {}:\n{told}", output.status));
+        return Err(format!("{name} ended with {}:\n{report}", output.status));
     }
     let ready: Option<Value> = printed.lines().next().and_then(|l| serde_json::from_str(l).ok());
     let ready = ready.ok_or_else(|| format!("{name} printed `{printed}`"))?;
@@ -99,13 +102,13 @@ fn collected(scene: &Scene, path: &str, steps: u64) -> Result<(f64, f64), String
         return Err(format!("{name} ran the path {}", ready["simd"]));
     }
     let particles = ready["particles"].as_f64();
-    let counted = instructions(&told);
-    counted.zip(particles).ok_or_else(|| format!("{name} told no count:\n{told}"))
+    let counted = instructions(&report);
+    counted.zip(particles).ok_or_else(|| format!("{name} reported no count:\n{report}"))
 }
 
 /// The figure in valgrind's line `==1== Collected : 123`.
-fn instructions(told: &str) -> Option<f64> {
-    let line = told.lines().find(|line| line.contains("Collected :"))?;
+fn instructions(report: &str) -> Option<f64> {
+    let line = report.lines().find(|line| line.contains("Collected :"))?;
     line.rsplit(':').next()?.trim().parse().ok()
 }
 
@@ -129,8 +132,8 @@ mod tests {
 
     #[test]
     fn the_count_of_callgrind_is_read() {
-        let told = "==7== Events    : Ir\n==7== Collected : 31542151\n==7== \n";
-        assert_eq!(instructions(told), Some(31_542_151.0));
+        let report = "==7== Events    : Ir\n==7== Collected : 31542151\n==7== \n";
+        assert_eq!(instructions(report), Some(31_542_151.0));
         assert_eq!(instructions("==7== Events    : Ir\n"), None);
     }
 }

@@ -1,6 +1,7 @@
 //! The tasks of the repository: `cargo xtask <task>`.
 //!
-//! Each task is one file. A task returns the text of what went wrong; the process then ends with status 1.
+//! Each task is one file. A task returns the text of what went wrong; the process then ends with
+//! status 1.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to the terminal
 
 mod bench;

@@ -40,7 +40,8 @@ const VIRIDIS: [[u8; 3]; 9] = [
 
 /// Reads `folder/*.vtp` in the order of their names.
 ///
-/// `printed` is what the driver printed; its lines `<name of the file>_time = <t>` tell the frames' times.
+/// `printed` is what the driver printed; its lines `<name of the file>_time = <t>` give the times
+/// of the frames.
 pub fn read_frames(folder: &Path, printed: &str) -> Result<Vec<Frame>, String> {
     let listing = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut files: Vec<_> = listing
@@ -190,15 +191,16 @@ where
 
 /// Colour of a value in 0 to 1; larger values take the last colour.
 fn colour(value: f64) -> RGBColor {
-    let place = value.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let first = (place as usize).min(VIRIDIS.len() - 2);
-    let part = place - first as f64;
+    let position = value.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let first = (position as usize).min(VIRIDIS.len() - 2);
+    let part = position - first as f64;
     let mix = |a: u8, b: u8| (f64::from(a) * (1.0 - part) + f64::from(b) * part).round() as u8;
     let (a, b) = (VIRIDIS[first], VIRIDIS[first + 1]);
     RGBColor(mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2]))
 }
 
-/// The value below which the share `q` of the numbers lies; 1 if they are all 0, so that one can divide by it.
+/// The value below which the share `q` of the numbers lies; 1 if they are all 0, so that one can
+/// divide by it.
 fn quantile(mut numbers: Vec<f64>, q: f64) -> f64 {
     numbers.sort_by(f64::total_cmp);
     let index = (q * (numbers.len().saturating_sub(1)) as f64) as usize;

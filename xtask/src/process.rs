@@ -1,4 +1,4 @@
-//! Running other programs, and where things stand.
+//! Running other programs, and the folders of the repository and the build.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ pub fn root() -> PathBuf {
     xtask.parent().map_or_else(|| PathBuf::from("."), Path::to_path_buf)
 }
 
-/// Folder of the release build: where this program itself stands, so `CARGO_TARGET_DIR` is honoured.
+/// Folder of the release build: where this program itself stands, so `CARGO_TARGET_DIR` is
+/// honoured.
 pub fn release_folder() -> Result<PathBuf, String> {
-    let exe =
-        std::env::current_exe().map_err(|e| format!("cannot tell where xtask stands: {e}"))?;
+    let exe = std::env::current_exe().map_err(|e| format!("cannot find the path of xtask: {e}"))?;
     exe.parent().map(Path::to_path_buf).ok_or_else(|| format!("{} has no folder", exe.display()))
 }
 
@@ -23,7 +23,8 @@ pub fn this_program() -> Result<PathBuf, String> {
     Ok(release_folder()?.join("xtask"))
 }
 
-/// Runs a program in the repository's folder with its output shown; anything but success is an error.
+/// Runs a program in the repository's folder with its output shown; anything but success is an
+/// error.
 pub fn run(program: &str, arguments: &[&str]) -> Result<(), String> {
     run_command(Command::new(program).args(arguments).current_dir(root()))
 }
@@ -55,7 +56,8 @@ pub fn output_of(command: &mut Command) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|e| format!("`{line}` printed no UTF-8: {e}"))
 }
 
-/// Runs a prepared command, shows each line of its standard output as it comes, and gives the whole of it.
+/// Runs a prepared command, shows each line of its standard output as it comes, and gives the whole
+/// of it.
 pub fn shown_output_of(command: &mut Command) -> Result<String, String> {
     let line = shown(command);
     eprintln!("$ {line}");

@@ -34,7 +34,8 @@ enum Rights {
     None,
 }
 
-/// Installs what `need` asks for and the machine lacks. If it may not, the error holds the one line to run.
+/// Installs what `need` asks for and the machine lacks. If it may not, the error holds the one line
+/// to run.
 pub fn run(need: Need) -> Result<(), String> {
     debian_packages(need)?;
     if need == Need::Tests {

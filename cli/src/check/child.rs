@@ -1,5 +1,5 @@
-//! The child process of `lahar plugin check`: loads the library, runs rules, and tells the parent through a file. It may die of what
-//! the library does.
+//! The child process of `lahar plugin check`: loads the library, runs rules, and reports to the
+//! parent through a file. The library may end it.
 
 use super::probe::{Probe, show};
 use super::report::{Event, ModelNote, Report, Verdict};
@@ -29,18 +29,18 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, String> {
     let report = Report::create(&arguments.report)?;
     work(arguments, &report);
-    report.tell(&Event::Finished);
+    report.send(&Event::Finished);
     Ok(ExitCode::SUCCESS)
 }
 
 fn work(arguments: &Arguments, report: &Report) {
     let choice = &arguments.choice;
-    report.tell(&Event::At { call: "loading the library and calling its entry".into() });
+    report.send(&Event::At { call: "loading the library and calling its entry".into() });
     let library = match Library::open(&choice.library) {
         Ok(library) => library,
         Err(e) => {
             let missing = e.status == Status::PluginNotFound;
-            report.tell(&Event::NotLoaded { text: e.to_string(), missing });
+            report.send(&Event::NotLoaded { text: e.to_string(), missing });
             return;
         }
     };
@@ -57,11 +57,11 @@ fn work(arguments: &Arguments, report: &Report) {
     };
     let models = library.models(choice.model.as_deref());
     match models.and_then(|models| models.iter().map(noted).collect::<Result<Vec<_>, String>>()) {
-        Err(text) => report.tell(&Event::Refused { text }),
+        Err(text) => report.send(&Event::Refused { text }),
         Ok(models) => {
             let plugin = format!("{} {}", library.plugin.id, library.plugin.version);
             let path = library.plugin.path.display().to_string();
-            report.tell(&Event::Loaded { plugin, path, models });
+            report.send(&Event::Loaded { plugin, path, models });
             if !arguments.rules.is_empty() {
                 run_rules(arguments, &library, report);
             }
@@ -74,11 +74,11 @@ fn run_rules(arguments: &Arguments, library: &Library, report: &Report) {
     let choice = &arguments.choice;
     let Ok(models) = library.models(choice.model.as_deref()) else { return };
     let Ok(values) = values(models[0], &choice.set) else { return };
-    let end = |rule: &str, verdict| report.tell(&Event::End { rule: rule.into(), verdict });
+    let end = |rule: &str, verdict| report.send(&Event::End { rule: rule.into(), verdict });
     let mut probe = None;
     for (i, name) in arguments.rules.iter().enumerate() {
         let Some(rule) = RULES.iter().find(|r| r.name == name) else { continue };
-        report.tell(&Event::Begin { rule: name.clone() });
+        report.send(&Event::Begin { rule: name.clone() });
         if i == 0 {
             match Probe::new(library, report, models[0], values.clone()) {
                 Ok(made) => probe = Some(made),

@@ -1,5 +1,5 @@
-//! `lahar plugin check`: the conformance suite. The rules run in child processes, so that a plugin that crashes, exits or hangs
-//! breaks a rule and not the tool.
+//! `lahar plugin check`: the conformance suite. The rules run in child processes, so that a plugin
+//! that crashes, exits or hangs breaks a rule and not the tool.
 
 pub mod child;
 mod probe;
@@ -113,7 +113,8 @@ impl Suite<'_> {
         }
     }
 
-    /// All rules on a model. Where the child dies, its rule is broken and another child goes on with the next.
+    /// All rules on a model. Where the child dies, its rule is broken and another child goes on
+    /// with the next.
     fn check(&mut self, model: &ModelNote) -> Result<(), String> {
         let mut deaths = 0;
         let mut next = 0;

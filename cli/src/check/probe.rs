@@ -1,4 +1,5 @@
-//! A model under test: calls that are told to the parent before they are made, starts, and paths through strain space.
+//! A model under test: calls that are reported to the parent before they are made, starts, and
+//! paths through strain space.
 
 use super::report::{Event, Report, Verdict};
 use crate::info::number;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 /// What ends a rule early: it is broken, or it cannot be run.
 pub type Outcome<T = Verdict> = Result<T, Verdict>;
 
-/// Length of a step unless a rule wants another [s].
+/// Length of a step unless a rule needs another [s].
 pub const DT: f64 = 1e-3;
 /// Mass density of the points [kg/m^3].
 pub const DENSITY: f64 = 1000.0;
@@ -40,7 +41,7 @@ pub struct Starts {
     pub good: Vec<Start>,
     /// Others, and why they are none.
     pub reasons: Vec<(String, String)>,
-    /// A breach of the contract that the engine found on the way.
+    /// A breach of the contract that the engine found in these calls.
     pub breach: Option<Verdict>,
 }
 
@@ -58,7 +59,7 @@ impl<'a> Probe<'a> {
         model: &'static Model,
         values: Values,
     ) -> Outcome<Self> {
-        report.tell(&Event::At { call: format!("create with {}", show(&values)) });
+        report.send(&Event::At { call: format!("create with {}", show(&values)) });
         let material = library.material(model, &values).map_err(|e| Verdict::Failed {
             sentence: format!("the model refuses its own default and typical values: {e}"),
             input: Some(show(&values)),
@@ -67,12 +68,12 @@ impl<'a> Probe<'a> {
         Ok(Self { library, report, model, values, material, starts, plane })
     }
 
-    /// Tells the parent what comes, in case that it does not come back.
+    /// Reports the next call to the parent, in case that it does not return.
     pub fn at(&self, call: impl FnOnce() -> String) {
-        self.report.tell(&Event::At { call: call() });
+        self.report.send(&Event::At { call: call() });
     }
 
-    fn tell(&self, call: &str, given: &[Given]) {
+    fn announce(&self, call: &str, given: &[Given]) {
         let first = given.first().map(|g| g.describe(self.model)).unwrap_or_default();
         let more = match given.len() {
             1 => String::new(),
@@ -83,7 +84,7 @@ impl<'a> Probe<'a> {
 
     /// An update that may be refused.
     pub fn try_update(&self, material: &Arc<Material>, given: &[Given]) -> Result<Vec<Got>, Error> {
-        self.tell("update", given);
+        self.announce("update", given);
         let mut points = Points::new(self.model, given);
         points.update(material)?;
         Ok((0..given.len()).map(|k| points.got(k)).collect())
@@ -100,14 +101,14 @@ impl<'a> Probe<'a> {
     }
 
     pub fn try_wave_speed(&self, given: &Given) -> Result<Got, Error> {
-        self.tell("wave_speed", std::slice::from_ref(given));
+        self.announce("wave_speed", std::slice::from_ref(given));
         let mut points = Points::new(self.model, std::slice::from_ref(given));
         points.wave_speed(&self.material)?;
         Ok(points.got(0))
     }
 
     pub fn try_init_state(&self, given: &Given) -> Result<Got, Error> {
-        self.tell("init_state", std::slice::from_ref(given));
+        self.announce("init_state", std::slice::from_ref(given));
         let mut points = Points::new(self.model, std::slice::from_ref(given));
         points.init_state(&self.material)?;
         Ok(points.got(0))
@@ -115,7 +116,7 @@ impl<'a> Probe<'a> {
 
     /// The tangent of a step, if the model offers it.
     pub fn tangent(&self, given: &Given) -> Outcome<Option<[[f64; 6]; 6]>> {
-        self.tell("tangent", std::slice::from_ref(given));
+        self.announce("tangent", std::slice::from_ref(given));
         let mut points = Points::new(self.model, std::slice::from_ref(given));
         match points.tangent(&self.material) {
             None => Ok(None),
@@ -128,7 +129,7 @@ impl<'a> Probe<'a> {
 
     /// Stored energy per volume at the start of the step, if the model offers it.
     pub fn stored_energy(&self, given: &Given) -> Outcome<Option<f64>> {
-        self.tell("stored_energy", std::slice::from_ref(given));
+        self.announce("stored_energy", std::slice::from_ref(given));
         let mut points = Points::new(self.model, std::slice::from_ref(given));
         match points.stored_energy(&self.material) {
             None => Ok(None),
@@ -149,8 +150,8 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// The points at rest from which the model goes on, at least one. A model need not bear every start: a gas has no pressure
-    /// without energy, a clay no stiffness without pressure.
+    /// The points at rest from which the model goes on, at least one. A model need not bear every
+    /// start: a gas has no pressure without energy, a clay no stiffness without pressure.
     pub fn starts(&self) -> Outcome<Vec<Start>> {
         let starts = self.tried_starts();
         match (&starts.breach, starts.good.is_empty()) {
@@ -212,7 +213,8 @@ impl<'a> Probe<'a> {
         Ok(point.moved(self.model, &Mat3::zeros(), &given, got))
     }
 
-    /// Whether the model refuses what shears out of the plane of x and y and takes what does not: it is then tried with plane motions.
+    /// Whether the model refuses what shears out of the plane of x and y and takes what does not:
+    /// it is then tried with plane motions.
     pub fn plane(&self) -> bool {
         *self.plane.get_or_init(|| {
             let Some(start) = self.tried_starts().good.first() else { return false };
@@ -226,7 +228,8 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// The part of a velocity gradient, strain or change of stress that the model can be tried with.
+    /// The part of a velocity gradient, strain or change of stress that the model can be tried
+    /// with.
     pub fn in_plane(&self, l: Mat3) -> Mat3 {
         if self.plane() { planar(l) } else { l }
     }
@@ -236,7 +239,8 @@ impl<'a> Probe<'a> {
         self.in_plane(lcg.gradient(rate))
     }
 
-    /// Points of every start after some random steps of that size [-]; where a step fails, the path ends before it.
+    /// Points of every start after some random steps of that size [-]; where a step fails, the path
+    /// ends before it.
     pub fn loaded(&self, seed: u64, scale: f64, steps: usize) -> Outcome<Vec<Point>> {
         let mut lcg = Lcg::new(seed);
         let mut points = Vec::new();

@@ -1,4 +1,5 @@
-//! What the child that runs the rules tells its parent: a line of JSON per event, in a file, since standard output belongs to the plugin.
+//! Reports of the child that runs the rules to its parent: a line of JSON per event, in a file,
+//! since standard output belongs to the plugin.
 
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
@@ -61,7 +62,7 @@ impl Report {
     }
 
     /// An event that cannot be written is lost: the parent then sees that the end is missing.
-    pub fn tell(&self, event: &Event) {
+    pub fn send(&self, event: &Event) {
         if let Ok(mut line) = serde_json::to_string(event) {
             line.push('\n');
             let _ = self.0.borrow_mut().write_all(line.as_bytes());

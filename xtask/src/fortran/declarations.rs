@@ -1,4 +1,5 @@
-//! A reader of `lahar.h` and `lahar_plugin.h`. It knows the regular C that cbindgen writes and refuses everything else.
+//! A reader of `lahar.h` and `lahar_plugin.h`. It knows the regular C that cbindgen writes and
+//! refuses everything else.
 
 /// What the header declares, in its order.
 #[derive(Debug, Default)]
@@ -129,8 +130,8 @@ fn without_comments(text: &str) -> String {
     let mut rest = text;
     while let Some(start) = rest.find("/*").into_iter().chain(rest.find("//")).min() {
         code.push_str(&rest[..start]);
-        let (mark, keep) = if rest[start..].starts_with("/*") { ("*/", 2) } else { ("\n", 0) };
-        let end = rest[start + 2..].find(mark).map_or(rest.len(), |end| start + 2 + end + keep);
+        let (mark, length) = if rest[start..].starts_with("/*") { ("*/", 2) } else { ("\n", 0) };
+        let end = rest[start + 2..].find(mark).map_or(rest.len(), |end| start + 2 + end + length);
         rest = &rest[end..];
     }
     code.push_str(rest);

@@ -1,6 +1,8 @@
-//! The `bind(c)` layers of `lahar.f90` and `lahar_plugin.f90`, made from `lahar.h` and `lahar_plugin.h`.
+//! The `bind(c)` layers of `lahar.f90` and `lahar_plugin.f90`, made from `lahar.h` and
+//! `lahar_plugin.h`.
 //!
-//! The section between two marker lines of a module is replaced; what stands around it is written by hand.
+//! The section between two marker lines of a module is replaced; what stands around it is written
+//! by hand.
 
 mod declarations;
 mod module;

@@ -1,7 +1,7 @@
 //! `cargo xtask verify`: runs the cases of `tests/cases` and writes `docs/verification.md`.
 //!
-//! What the runs gave is kept in `docs/verification/<case>.json`, so that some cases can be run anew; table and plots are made
-//! from that.
+//! What the runs gave is kept in `docs/verification/<case>.json`, so that some cases can be run
+//! anew; table and plots are made from that.
 
 mod plot;
 mod report;
@@ -13,7 +13,7 @@ use clap::Args;
 use lahar_verification::case::{self, Case};
 use lahar_verification::{judge, run};
 
-/// What `verify` can be told.
+/// Arguments of `verify`.
 #[derive(Args)]
 pub struct Arguments {
     /// Cases to run, by id; all if none is given
@@ -29,7 +29,7 @@ pub struct Arguments {
     dry_run: bool,
 }
 
-/// Runs cases and judges them; an error tells which checks do not pass.
+/// Runs cases and judges them; an error names the checks that do not pass.
 pub fn run(arguments: &Arguments) -> Result<(), String> {
     let cases = case::load(&arguments.cases)?;
     process::cargo(&["build", "--release", "--workspace"])?; // the plugins

@@ -10,7 +10,7 @@ use crate::picture::{FONT, register_font};
 const SIZE: (u32, u32) = (960, 400);
 const LEGEND: u32 = 300; // pixels at the right
 
-/// Colours that can be told apart without seeing colours well (Okabe and Ito, 2008).
+/// Colours that people with colour blindness can distinguish (Okabe and Ito, 2008).
 const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

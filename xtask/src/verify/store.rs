@@ -35,7 +35,8 @@ pub fn folder() -> PathBuf {
     process::root().join("docs/verification")
 }
 
-/// What is kept of a case; nothing if it was never run. Runs whose set-up has changed since are left out.
+/// What is kept of a case; nothing if it was never run. Runs whose set-up has changed since are
+/// left out.
 pub fn read(case: &Case) -> Result<Kept, String> {
     let file = file(case);
     if !file.is_file() {
@@ -48,7 +49,7 @@ pub fn read(case: &Case) -> Result<Kept, String> {
     Ok(kept)
 }
 
-/// Puts new outcomes in the place of old ones.
+/// Replaces old outcomes by new ones.
 pub fn keep(cases: &[Case], done: &[Done<'_>], made: &str) -> Result<(), String> {
     std::fs::create_dir_all(folder()).map_err(|e| format!("{}: {e}", folder().display()))?;
     for case in cases {

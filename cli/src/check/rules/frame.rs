@@ -23,7 +23,8 @@ fn frames(plane: bool) -> [Mat3; 3] {
     ]
 }
 
-/// A material that was turned, and is then strained in the turned directions, must give the same stress, turned.
+/// A material that was turned, and is then strained in the turned directions, must give the same
+/// stress, turned.
 pub fn objectivity(probe: &Probe<'_>) -> Outcome {
     match probe.model.kinematics.takes_strain_increment() {
         true => turned_by_the_engine(probe),
@@ -110,11 +111,13 @@ fn state_name(probe: &Probe<'_>, component: usize) -> String {
     component.to_string()
 }
 
-/// Steps of the spin that turns a material before it is strained, and their angle: together half a right angle or so.
+/// Steps of the spin that turns a material before it is strained, and their angle: together half a
+/// right angle or so.
 const SPINS: usize = 200;
 const SPIN: f64 = 4e-3;
 
-/// The model sees the material turn, step by step, before it is strained; beside it one that rests for as long.
+/// The model sees the material turn, step by step, before it is strained; beside it one that rests
+/// for as long.
 fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     // A rotation of first order in each step errs by half the square of the angle.
@@ -158,7 +161,8 @@ fn turned_by_the_model(probe: &Probe<'_>) -> Outcome {
     }
 }
 
-/// A spin by `rate` [rad/s] about z for plane motions, else about an axis that is none of the coordinates'.
+/// A spin by `rate` [rad/s] about z for plane motions, else about an axis that is none of the
+/// coordinates'.
 fn skew(rate: f64, plane: bool) -> Mat3 {
     let axis = if plane { [0.0, 0.0, 1.0] } else { [2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0] };
     let [x, y, z] = axis.map(|a| a * rate);
@@ -190,7 +194,8 @@ fn spun(probe: &Probe<'_>, point: &Point, w: &Mat3) -> Outcome<Option<Point>> {
     Ok(Some(point))
 }
 
-/// A step of rigid spin must turn the stress with the material. Where the engine turns it, the model sees nothing of the spin.
+/// A step of rigid spin must turn the stress with the material. Where the engine turns it, the
+/// model sees nothing of the spin.
 pub fn spin(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     if model.kinematics.takes_strain_increment() {
@@ -216,7 +221,8 @@ pub fn spin(probe: &Probe<'_>) -> Outcome {
         let expected = rotate(&r, point.stress);
         let deviator = size(&expected) + size(&point.stress);
         let off = distance(&expected, &got.stress);
-        // A rotation of first order errs by the square of the angle; one that is left out by the angle.
+        // A rotation of first order errs by the square of the angle; one that is left out by the
+        // angle.
         let allowed = (angle * angle) * deviator + 1e-9 * probe.modulus(&point)?;
         if off > allowed {
             let text = format!(

@@ -11,7 +11,8 @@ use std::fs;
 
 const CYCLES: usize = 1000;
 const ROUNDS: usize = 5;
-/// A leak is told above this many bytes an instance: what the system's allocator keeps back is less.
+/// Above this many bytes per instance a leak is reported: what the system's allocator does not give
+/// back is less.
 const LEAK: usize = 128;
 
 /// Creates and destroys instances: none may fail, and memory must not grow from round to round.
@@ -40,7 +41,7 @@ pub fn instances(probe: &Probe<'_>) -> Outcome {
     Ok(Verdict::Ok(format!("{} instances", ROUNDS * CYCLES)))
 }
 
-/// Memory of this process that is in use; 0 if the system does not tell.
+/// Memory of this process that is in use; 0 if the system does not say.
 fn resident_bytes() -> usize {
     let text = fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages = text.split(' ').nth(1).and_then(|t| t.parse::<usize>().ok()).unwrap_or(0);
@@ -51,8 +52,8 @@ fn with(values: &Values, key: &str, value: f64) -> Values {
     values.iter().map(|(k, v)| (*k, if *k == key { value } else { *v })).collect()
 }
 
-/// Values beyond a hard bound are refused by the engine; those at hard and advised bounds by the model, with a reason, or taken; and what
-/// is advised must work.
+/// Values beyond a hard bound are refused by the engine; those at hard and advised bounds by the
+/// model, with a reason, or taken; and what is advised must work.
 pub fn bounds(probe: &Probe<'_>) -> Outcome {
     let (mut taken, mut refused) = (0, 0);
     for p in &probe.model.parameters {
@@ -113,7 +114,8 @@ fn beyond(p: &Parameter) -> Vec<f64> {
     values
 }
 
-/// Values that the bounds allow, and whether the model has to work with them: those that are advised.
+/// Values that the bounds allow, and whether the model has to work with them: those that are
+/// advised.
 fn allowed(p: &Parameter) -> Vec<(f64, bool)> {
     if p.kind == ParameterKind::Choice {
         return (0..p.choices.len()).map(|i| (i as f64, true)).collect();

@@ -1,4 +1,4 @@
-//! What a model remembers between calls: nothing.
+//! A model must store nothing between calls.
 
 use crate::check::probe::{DT, Lcg, Outcome, Probe, distance, size};
 use crate::check::report::Verdict;
@@ -39,7 +39,8 @@ fn same(probe: &Probe<'_>, a: &Got, b: &Got) -> bool {
     distance(&a, &b) <= 1e-12 * size(&a)
 }
 
-/// Repeats every step after others: another size, another point, a batch, another instance with other values.
+/// Repeats every step after others: another size, another point, a batch, another instance with
+/// other values.
 pub fn memory(probe: &Probe<'_>) -> Outcome {
     let tasks = tasks(probe, 3)?;
     let pointwise = probe.model.capabilities & LAHAR_CAPABILITY_POINTWISE != 0;

@@ -1,4 +1,4 @@
-//! The rules that a model must keep, in the order in which they are run.
+//! The rules that a model must follow, in the order in which they are run.
 
 mod frame;
 mod life;
@@ -13,7 +13,7 @@ pub struct Rule {
     pub name: &'static str,
     /// What holds where the rule holds.
     pub says: &'static str,
-    /// Whether the engine looks over the shoulder of every call, with LAHAR_CHECK_PLUGINS=1.
+    /// Whether the engine checks every call, with LAHAR_CHECK_PLUGINS=1.
     pub checked: bool,
     pub run: fn(&Probe<'_>) -> Outcome,
 }

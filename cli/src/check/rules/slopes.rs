@@ -7,7 +7,8 @@ use lahar::tensor::{Mat3, symmetric};
 use lahar_plugin_abi::LAHAR_OUTPUT_DIFFUSIVITY;
 use nalgebra::{SymmetricEigen, Vector3};
 
-/// Strain of a difference [-]: its square is small beside any yield strain, and round-off of the stress beside its product with a stiffness.
+/// Strain of a difference [-]: its square is small beside any yield strain, and round-off of the
+/// stress beside its product with a stiffness.
 const H: f64 = 1e-7;
 
 fn unit(j: usize, h: f64) -> [f64; 6] {
@@ -74,14 +75,15 @@ const NAMES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
 /// Strains of plane motions.
 const PLANE: [usize; 3] = [0, 1, 3];
 
-/// Compares what `wave_speed` and `update` say with each other and with the response to small strains: ρ c² is the largest eigenvalue of the
-/// acoustic tensor n.C.n. Of a fluid, whose shear stress is no stiffness, with the bulk modulus.
+/// Compares what `wave_speed` and `update` say with each other and with the response to small
+/// strains: ρ c² is the largest eigenvalue of the acoustic tensor n.C.n. Of a fluid, whose shear
+/// stress is no stiffness, with the bulk modulus.
 pub fn wave_speed(probe: &Probe<'_>) -> Outcome {
     let mut slowest = f64::INFINITY;
     for steps in [0, 12] {
         for point in probe.loaded(13, 1e-5, steps)? {
             let given = point.at_rest(probe.model);
-            let told = probe
+            let queried = probe
                 .try_wave_speed(&given)
                 .map_err(|e| probe.failed(e.to_string(), &given))?
                 .wave_speed;
@@ -89,22 +91,22 @@ pub fn wave_speed(probe: &Probe<'_>) -> Outcome {
             if !got.is_done() {
                 continue;
             }
-            for (name, speed) in [("wave_speed", told), ("update", got.wave_speed)] {
+            for (name, speed) in [("wave_speed", queried), ("update", got.wave_speed)] {
                 if !(speed > 0.0 && speed.is_finite()) {
                     let text = format!("`{name}` gives the wave speed {speed:?} m/s");
                     return Err(probe.failed(text, &given));
                 }
             }
-            if !(0.5..=2.0).contains(&(told / got.wave_speed)) {
+            if !(0.5..=2.0).contains(&(queried / got.wave_speed)) {
                 let text = format!(
-                    "`wave_speed` gives {told:?} m/s and `update` {:?} m/s at the same point",
+                    "`wave_speed` gives {queried:?} m/s and `update` {:?} m/s at the same point",
                     got.wave_speed
                 );
                 return Err(probe.failed(text, &given));
             }
             let Some((stiffness, how)) = largest_stiffness(probe, &point)? else { continue };
             let speed = (stiffness / point.density).sqrt();
-            let declared = told.min(got.wave_speed);
+            let declared = queried.min(got.wave_speed);
             if declared < 0.99 * speed {
                 let text = format!(
                     "the wave speed is {declared:.6e} m/s, but {how} carries waves of {speed:.6e} m/s; time steps would be too \
@@ -157,7 +159,8 @@ fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, S
             if !linear {
                 continue;
             }
-            // At a corner of a yield surface the response to a sum is not the sum of responses: ask for that of the fastest wave itself.
+            // At a corner of a yield surface the response to a sum is not the sum of responses: ask
+            // for that of the fastest wave itself.
             let waves = SymmetricEigen::new(0.5 * (acoustic + acoustic.transpose()));
             let m = waves.eigenvectors.column(waves.eigenvalues.imax()).into_owned();
             for m in [m, -m] {
@@ -173,7 +176,8 @@ fn largest_stiffness(probe: &Probe<'_>, point: &Point) -> Outcome<Option<(f64, S
     Ok(best)
 }
 
-/// Change of stress per strain of this shape [Pa]; None if it fails or depends on the size of the strain.
+/// Change of stress per strain of this shape [Pa]; None if it fails or depends on the size of the
+/// strain.
 fn response(probe: &Probe<'_>, given: &Given, shape: &Mat3, h: f64) -> Outcome<Option<Mat3>> {
     let at = |h: f64| -> Outcome<Option<Mat3>> {
         let strain = lahar::tensor::symmetric_part(&(shape * h));
@@ -197,7 +201,8 @@ fn directions() -> Vec<Vector3<f64>> {
     all
 }
 
-/// Small cycles of strain: where the stress comes back, the work of the way out must be in the stored energy.
+/// Small cycles of strain: if the stress returns to its start, the work of the loading half must be
+/// in the stored energy.
 pub fn stored_energy(probe: &Probe<'_>) -> Outcome {
     if !probe.model.offers_stored_energy() {
         return Ok(Verdict::Skipped("not offered".into()));
@@ -227,7 +232,8 @@ pub fn stored_energy(probe: &Probe<'_>) -> Outcome {
                 Ok(stored * start.point.density / point.density)
             };
             let stored = energy(&turn)? - energy(&start.point)?;
-            // The strain is 1e-4: the energy of a stiffness, and what a stress at the start adds to it.
+            // The strain is 1e-4: the energy of a stiffness, and what a stress at the start adds to
+            // it.
             let scale = out.abs() + modulus * 1e-8;
             if !((stored - out).abs() <= 0.01 * scale) {
                 let text = format!(
@@ -243,7 +249,8 @@ pub fn stored_energy(probe: &Probe<'_>) -> Outcome {
     }
 }
 
-/// Steps along `l`: the work per volume at the start [J/m^3] and the point at the end; None if a step fails.
+/// Steps along `l`: the work per volume at the start [J/m^3] and the point at the end; None if a
+/// step fails.
 fn path(probe: &Probe<'_>, start: &Point, l: &Mat3, steps: usize) -> Outcome<Option<(f64, Point)>> {
     let (mut point, mut done) = (start.clone(), 0.0);
     for _ in 0..steps {

@@ -18,15 +18,15 @@ pub fn starts(probe: &Probe<'_>) -> Outcome {
     if let Some(breach) = breach {
         return Err(breach.clone());
     }
-    let told = grouped(reasons);
-    if let Some(mute) = told.iter().find(|r| r.contains("without saying why")) {
+    let grouped_reasons = grouped(reasons);
+    if let Some(mute) = grouped_reasons.iter().find(|r| r.contains("without saying why")) {
         return Err(Verdict::failed(format!("{mute}; set_error must be called")));
     }
     if starts.is_empty() {
         return Err(Verdict::failed(format!(
             "{}the model goes on from none of the starts that were tried: {}",
             without_values(probe),
-            told.join("; ")
+            grouped_reasons.join("; ")
         )));
     }
     // Starts that a host may ask for by mistake: they come back, taken or refused.
@@ -97,8 +97,8 @@ pub fn contract(probe: &Probe<'_>) -> Outcome {
     Ok(Verdict::Ok(format!("batches of {sizes:?} points")))
 }
 
-/// A step at rest from a point that a step at rest has settled must change nothing; and stress that does not depend on the rate must stay
-/// at once.
+/// A step at rest from a point that a step at rest has settled must change nothing; and stress that
+/// does not depend on the rate must stay at once.
 pub fn zero_increment(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     let mut count = 0;
@@ -244,7 +244,8 @@ fn sane(probe: &Probe<'_>, given: &Given, got: &Got) -> Outcome<()> {
     Ok(())
 }
 
-/// Steps whose length goes to zero at a given velocity gradient: the stress must go to that of the start.
+/// Steps whose length goes to zero at a given velocity gradient: the stress must go to that of the
+/// start.
 pub fn small_steps(probe: &Probe<'_>) -> Outcome {
     let l = probe.in_plane(Mat3::new(0.1, 0.03, 0.0, -0.02, -0.06, 0.01, 0.04, 0.0, -0.05));
     let mut count = 0;
@@ -265,14 +266,14 @@ pub fn small_steps(probe: &Probe<'_>) -> Outcome {
 
 type Set = fn(&mut Given, usize, f64);
 
-/// Numbers that are none, one at a time in every place of one point among four.
+/// Invalid numbers, one at a time in every input component of one point among four.
 pub fn garbage(probe: &Probe<'_>) -> Outcome {
     let model = probe.model;
     let start = &probe.starts()?[0];
     let l = probe.in_plane(Mat3::new(0.5, 0.2, 0.0, 0.1, -0.4, 0.0, 0.0, 0.3, -0.2) * (1e-5 / DT));
     let clean = vec![start.point.given(model, &l, DT); 4];
     let expected = probe.update(&clean)?;
-    let places: [(&str, usize, Set); 6] = [
+    let slots: [(&str, usize, Set); 6] = [
         ("strain increment", 6, |g, c, v| g.strain[c] = v),
         ("velocity gradient", 9, |g, c, v| g.gradient[c] = v),
         ("deformation gradient", 9, |g, c, v| g.deformation[c] = v),
@@ -281,7 +282,7 @@ pub fn garbage(probe: &Probe<'_>) -> Outcome {
         ("input", model.inputs.len(), |g, c, v| g.inputs[c] = v),
     ];
     let mut count = 0;
-    for (name, components, set) in places {
+    for (name, components, set) in slots {
         for c in 0..components {
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 0.0, -1.0] {
                 let mut given = clean.clone();
