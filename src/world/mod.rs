@@ -489,3 +489,6 @@ fn write_capsule(context: &Context, mut capsule: Capsule) -> String {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
