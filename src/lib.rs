@@ -1,9 +1,10 @@
 //! lahar: an embeddable material point method engine.
 //!
-//! Bodies are clouds of particles that carry mass, momentum, stress and history. In every step the particles give mass and
-//! momentum to a background grid, the equation of motion is solved at its nodes, and the particles take velocities and velocity
-//! gradients back; constitutive models, loaded as plugins, turn the gradients into stresses. The grid is sparse: blocks
-//! of nodes appear where particles are and vanish behind them, so that the domain is unbounded.
+//! Bodies are clouds of particles that carry mass, momentum, stress and history. In every step the
+//! particles give mass and momentum to a background grid, the equation of motion is solved at its
+//! nodes, and the particles take velocities and velocity gradients back; constitutive models,
+//! loaded as plugins, turn the gradients into stresses. The grid is sparse: blocks of nodes appear
+//! where particles are and vanish behind them, so that the domain is unbounded.
 //!
 //! # Map
 //!
@@ -11,7 +12,8 @@
 //! * [`particles`], [`background`]: the data. [`shape`], [`transfer`], [`boundary`]: the methods to
 //!   choose from, each choice a list ([`choice`]).
 //! * [`material`]: what the engine knows of a constitutive model; `plugin` loads them.
-//! * [`world`] owns everything; [`context`] owns threads, log and plugins; `ffi` is the C ABI, documented in `lahar.h`.
+//! * [`world`] owns everything; [`context`] owns threads, log and plugins; `ffi` is the C ABI,
+//!   documented in `lahar.h`.
 #![deny(missing_docs)]
 
 pub mod background;

@@ -45,8 +45,8 @@ impl<const D: usize> Normal<D> for AxisNormal {
     }
 }
 
-/// The velocity that a boundary leaves a node with velocity `v` relative to it [m/s]; `friction` is the
-/// coefficient μ.
+/// The velocity that a boundary leaves a node with velocity `v` relative to it [m/s]; `friction` is
+/// the coefficient μ.
 #[inline(always)]
 pub fn constrain<const D: usize>(
     kind: WallKind,

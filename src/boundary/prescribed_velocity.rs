@@ -103,9 +103,9 @@ impl Condition for Prescribed {
         self.condition.velocity.largest(from, until)
     }
 
-    /// Nodes of the box with any mass get the velocity of the end of the step in the components that are
-    /// prescribed; what that changes is the reaction. They are few beside the particles: one thread does it,
-    /// in the order of the blocks.
+    /// Nodes of the box with any mass get the velocity of the end of the step in the components
+    /// that are prescribed; what that changes is the reaction. They are few beside the particles:
+    /// one thread does it, in the order of the blocks.
     fn hold<const D: usize>(
         &mut self,
         background: &mut Background<D>,

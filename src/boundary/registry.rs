@@ -31,8 +31,8 @@ pub trait Condition {
         0.0
     }
 
-    /// Changes velocities and increments of nodes, after the walls, and gives the momentum that the material
-    /// got [N s]; None if it does nothing to nodes here.
+    /// Changes velocities and increments of nodes, after the walls, and gives the momentum that the
+    /// material got [N s]; None if it does nothing to nodes here.
     fn hold<const D: usize>(
         &mut self,
         _background: &mut Background<D>,

@@ -183,13 +183,11 @@ impl Points {
             self.status.resize(stride.max(POINTS + 8), 0);
         }
         let mut rest = self.doubles.as_mut_slice();
-        let mut parts = sizes.map(|components| {
-            let (part, tail) = std::mem::take(&mut rest).split_at_mut(components * stride);
-            rest = tail;
-            part
-        });
-        let mut next = parts.iter_mut().map(std::mem::take);
-        let mut take = || next.next().unwrap_or_default();
+        let mut sizes = sizes.into_iter();
+        let mut take = || {
+            let doubles = sizes.next().unwrap_or(0) * stride;
+            rest.split_off_mut(..doubles).unwrap_or_default()
+        };
         let status = &mut self.status[..stride];
         status.fill(0);
         Scratch {

@@ -47,7 +47,8 @@ impl<'a> ChunkMut<'a> {
         std::array::from_fn(|c| self.column(first + c))
     }
 
-    /// What a gather writes of the particles in `range`, with their marks (see [`ChunkMut::moved`]).
+    /// What a gather writes of the particles in `range`, with their marks (see
+    /// [`ChunkMut::moved`]).
     #[inline(always)]
     pub fn motion<const D: usize>(&mut self, (first, end): (usize, usize)) -> Motion<'_, D> {
         let Layout { velocity, mass, affine, filtered, deformation_gradient, state, .. } =

@@ -1,5 +1,6 @@
 //! Stage 4, boundaries: walls change the velocities of the nodes they reach and take up the
-//! momentum; then come the conditions of other kinds that hold nodes, see [`Condition::hold`](crate::boundary::Condition::hold).
+//! momentum; then come the conditions of other kinds that hold nodes, see
+//! [`Condition::hold`](crate::boundary::Condition::hold).
 //!
 //! A node that is held is not damped: its reaction is m Δv / dt − (f + m g), with the whole force,
 //! not with what local damping left of it.
@@ -76,8 +77,8 @@ fn apply_walls<const D: usize>(
     });
 }
 
-/// Takes from the impulse of a condition what local damping took from the force on the components that it
-/// stopped.
+/// Takes from the impulse of a condition what local damping took from the force on the components
+/// that it stopped.
 fn undo_damping<const D: usize>(
     (gravity, dt): ([f64; 3], f64),
     (velocity, increment, force): (&Record, &Record, &Record),
@@ -91,7 +92,8 @@ fn undo_damping<const D: usize>(
     }
 }
 
-/// Turns the momentum of the second scatter into velocity and applies walls and prescribed velocities to it.
+/// Turns the momentum of the second scatter into velocity and applies walls and prescribed
+/// velocities to it.
 pub fn apply_boundaries_again<const D: usize>(
     background: &mut Background<D>,
     conditions: &Conditions,

@@ -12,7 +12,8 @@ use crate::material::scratch::Scratch;
 use crate::particles::{Columns, Layout};
 use crate::simd::{Isa, Kernel, LANES, Vector};
 
-/// Takes over what stands in scratch: volume, stress, energy, sizes, deformation gradient and state of a chunk.
+/// Takes over what stands in scratch: volume, stress, energy, sizes, deformation gradient and state
+/// of a chunk.
 pub fn commit<const D: usize>(
     work: &mut ChunkWork<'_, '_>,
     isa: Isa,
@@ -80,8 +81,8 @@ impl<V: Vector> Finite<V> {
     }
 }
 
-/// Finds the energy at the end. Gives the largest c + |v|, and whether everything is finite and no wave speed
-/// negative.
+/// Finds the energy at the end. Gives the largest c + |v|, and whether everything is finite and no
+/// wave speed negative.
 struct Check<'p, 'c, 's, const D: usize>(&'p mut ChunkWork<'c, 's>);
 
 impl<const D: usize> Kernel for Check<'_, '_, '_, D> {

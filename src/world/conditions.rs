@@ -34,7 +34,8 @@ impl World {
         C::list(self.conditions()).get(id)
     }
 
-    /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the options.
+    /// Sets gravity by a table [m/s²] from the next step on; None: back to the constant of the
+    /// options.
     pub fn set_gravity_table(&mut self, table: Option<Table>) -> Result<()> {
         self.check_alive()?;
         let table =
