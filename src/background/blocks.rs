@@ -160,7 +160,7 @@ impl<const D: usize> Blocks<D> {
         Some(index)
     }
 
-    /// Blocks that the last change made, and that it removed.
+    /// Blocks that were created and removed since [`Blocks::no_change`].
     pub fn turnover(&self) -> (usize, usize) {
         (self.created, self.removed)
     }
@@ -179,7 +179,7 @@ impl<const D: usize> Blocks<D> {
             + self.index.bytes()
     }
 
-    /// Resets the numbers of blocks that the last change created and removed.
+    /// Begins to count created and removed blocks anew.
     pub fn no_change(&mut self) {
         (self.created, self.removed) = (0, 0);
     }
@@ -192,9 +192,8 @@ impl<const D: usize> Blocks<D> {
         if keep_active {
             self.order.iter().for_each(|slot| self.reached[*slot as usize] = true);
         }
-        self.removed = self.order.iter().filter(|slot| !self.reached[**slot as usize]).count();
-        self.created = self.fresh.len();
-        let blocks = self.order.len() - self.removed + self.created;
+        let stays = self.order.iter().filter(|slot| self.reached[**slot as usize]).count();
+        let blocks = stays + self.fresh.len();
         Ok(if blocks > self.keys.len() { room(blocks) } else { self.keys.len() })
     }
 
@@ -208,10 +207,12 @@ impl<const D: usize> Blocks<D> {
         if slots > self.keys.len() {
             self.resize(slots)?;
         }
-        if self.removed > 0 {
+        if self.order.iter().any(|slot| !self.reached[*slot as usize]) {
             self.remove_unreached();
         }
         self.create_fresh();
+        self.created += self.fresh.len();
+        self.removed += self.freed.len();
         Ok(())
     }
 
@@ -234,6 +235,11 @@ impl<const D: usize> Blocks<D> {
         let (created, removed) = (self.created, self.removed);
         small = Self { fresh, created, removed, ..small };
         small.create_fresh();
+        for slot in self.order.iter().map(|slot| *slot as usize).filter(|slot| self.ghost[*slot]) {
+            if let Some(new) = small.find(&self.keys[slot]) {
+                small.ghost[new as usize] = true;
+            }
+        }
         Ok(Some(small))
     }
 
@@ -371,6 +377,7 @@ mod tests {
 
     /// Both halves of a change, and the compaction.
     fn set_owners<const D: usize>(grid: &mut Blocks<D>, owners: &[Key<D>], keep_active: bool) {
+        grid.no_change();
         let slots = grid.plan(owners, keep_active).expect("memory");
         grid.carry_out(slots).expect("memory");
         if let Some(small) = grid.compacted().expect("memory") {

@@ -164,15 +164,19 @@ impl WorldCell {
         is_unchanged: impl FnOnce(&R) -> bool,
     ) -> Result<R> {
         let mut world = self.write(change)?;
-        let was_fresh = world.is_fresh();
+        let sorts = world.sorts();
         if change == Change::Step {
+            if self.written_through_views.swap(false, Ordering::AcqRel) {
+                world.views_closed();
+            }
             self.context.context.check_process()?;
             // Before the call, so that views are stale after a panic too; nobody reads it under the
             // write lock.
             self.generation.fetch_add(1, Ordering::AcqRel);
         }
         let result = f(&mut world);
-        if change == Change::Step && was_fresh && is_unchanged(&result) && !world.is_poisoned() {
+        let same_order = world.sorts() == sorts && is_unchanged(&result) && !world.is_poisoned();
+        if change == Change::Step && same_order {
             self.generation.fetch_sub(1, Ordering::AcqRel);
         }
         Ok(result)

@@ -1,6 +1,6 @@
 //! Chunks of particles, which threads work on.
 
-use super::Layout;
+use super::{Columns, Layout};
 use crate::parallel::Divide;
 use crate::simd::{Table, prefetch};
 
@@ -50,17 +50,17 @@ impl<'a> ChunkMut<'a> {
     /// What a gather writes of the particles in `range`, with their marks (see
     /// [`ChunkMut::moved`]).
     #[inline(always)]
-    pub fn motion<const D: usize>(&mut self, (first, end): (usize, usize)) -> Motion<'_, D> {
-        let Layout { velocity, mass, affine, filtered, deformation_gradient, state, .. } =
-            self.layout;
-        let behind = deformation_gradient.map_or(state.first, |f| f.first);
-        let start_of_filtered = filtered.map_or(behind, |f| f.first);
-        let start_of_affine = affine.map_or(start_of_filtered, |c| c.first);
-        let (motion, rest) = self.table.some_rows(first, end - first).split_columns(mass);
-        let (position, velocity) = motion.split_columns(velocity);
-        let (others, rest) = rest.split_columns(start_of_affine - mass);
-        let (affine, rest) = rest.split_columns(start_of_filtered - start_of_affine);
-        let (filtered, _) = rest.split_columns(behind - start_of_filtered);
+    pub fn motion<const D: usize>(&mut self, (first, end_of): (usize, usize)) -> Motion<'_, D> {
+        let layout = self.layout;
+        let written = [layout.affine, layout.filtered];
+        let others = [layout.deformation_gradient, Some(layout.state)];
+        let behind = written.iter().chain(&others).flatten().map(|columns| columns.first);
+        let end = behind.min().unwrap_or(layout.mass);
+        let (motion, rest) = self.table.some_rows(first, end_of - first).split_columns(layout.mass);
+        let (position, velocity) = motion.split_columns(layout.velocity);
+        let (others, rest) = rest.split_columns(end - layout.mass);
+        let (affine, rest, at) = take(rest, end, layout.affine);
+        let (filtered, ..) = take(rest, at, layout.filtered);
         Motion {
             position: position.into_columns(),
             velocity: velocity.into_columns(),
@@ -112,6 +112,19 @@ impl<'a> ChunkMut<'a> {
         }
         work(&mut rest);
     }
+}
+
+/// Takes columns out of a table that begins with column `at`: those, the ones behind, and the column
+/// with which these begin. Nothing if there are none.
+#[inline(always)]
+fn take(table: Table<'_>, at: usize, columns: Option<Columns>) -> (Table<'_>, Table<'_>, usize) {
+    let Some(Columns { first, count }) = columns else {
+        let (none, rest) = table.split_columns(0);
+        return (none, rest, at);
+    };
+    let (_, table) = table.split_columns(first - at);
+    let (taken, rest) = table.split_columns(count);
+    (taken, rest, first + count)
 }
 
 /// The columns that a gather writes.

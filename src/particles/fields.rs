@@ -141,6 +141,8 @@ macro_rules! fields {
             pub $some: Option<Columns>,)+
             /// State variables of the model.
             pub state: Columns,
+            /// Number of axes of the world.
+            pub dimension: usize,
         }
 
         impl Layout {
@@ -159,6 +161,7 @@ macro_rules! fields {
                         when(carrier).then(|| take(Shape::$some_shape.components(dimension)))
                     },)+
                     state: take(carrier.model.state_components()),
+                    dimension,
                 }
             }
 
@@ -166,7 +169,7 @@ macro_rules! fields {
             #[cfg(test)]
             fn with_everything() -> Self {
                 let columns = Columns { first: 0, count: 1 };
-                Self { $($name: 0,)+ $($some: Some(columns),)+ state: columns }
+                Self { $($name: 0,)+ $($some: Some(columns),)+ state: columns, dimension: 2 }
             }
 
             /// All fields of the engine: columns, whether hosts see them, rule, and what hosts may
@@ -185,6 +188,12 @@ macro_rules! fields {
                     list.push((columns, Writer::$some_writer, Rule::$some_rule, info));
                 })+
                 list
+            }
+
+            /// The columns of what some bodies lack, as far as the body carries it.
+            #[inline(always)]
+            pub fn optional(&self) -> impl Iterator<Item = Columns> {
+                [$(self.$some),+].into_iter().flatten()
             }
 
             /// Every field that both layouts have, as pairs of columns in this one and in the
@@ -273,11 +282,11 @@ impl Layout {
         seen.map(|(columns, _, _, info)| (info, columns.first)).collect()
     }
 
-    /// What a column must hold, and the name of its field.
-    pub fn rule_of(&self, dimension: usize, column: usize) -> (Rule, &'static CStr) {
-        let all = self.all(dimension);
-        let found = all.iter().find(|(columns, ..)| columns.contains(column));
-        found.map_or((Rule::Finite, c"a state variable"), |(_, _, rule, info)| (*rule, info.name))
+    /// What columns must hold, and the names of their fields; state variables come last.
+    pub fn rules(&self, dimension: usize) -> Vec<(Columns, Rule, &'static CStr)> {
+        let all = self.all(dimension).into_iter();
+        let engine = all.map(|(columns, _, rule, info)| (columns, rule, info.name));
+        engine.chain([(self.state, Rule::Finite, c"a state variable")]).collect()
     }
 }
 

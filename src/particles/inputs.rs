@@ -16,7 +16,6 @@ pub fn fill_inputs<'c>(
     let (n, stride) = (scratch.n, scratch.stride);
     for (values, input) in scratch.inputs.chunks_mut(stride).zip(&scratch.model.inputs) {
         let values = &mut values[..n];
-        let axes = layout.velocity - layout.position;
         let mut fill_from = |c: usize| values.copy_from_slice(column(c));
         match input {
             Input::Density => {}
@@ -29,7 +28,7 @@ pub fn fill_inputs<'c>(
                     *value = energy / mass;
                 });
             }
-            Input::PositionZ if axes < 3 => values.fill(0.0),
+            Input::PositionZ if layout.dimension < 3 => values.fill(0.0),
             Input::PositionX | Input::PositionY | Input::PositionZ => {
                 let axis = *input as usize - Input::PositionX as usize;
                 fill_from(layout.position + axis);

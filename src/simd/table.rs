@@ -25,6 +25,7 @@ impl<'a> Table<'a> {
     pub fn new(data: &'a mut [f64], stride: usize, rows: usize) -> Self {
         assert!(rows <= stride, "{rows} rows in columns of {stride}");
         let columns = data.len().checked_div(stride).unwrap_or(0);
+        let rows = if columns == 0 { 0 } else { rows };
         Self { first: data.as_mut_ptr(), stride, columns, rows, data: PhantomData }
     }
 
@@ -90,9 +91,8 @@ impl<'a> Table<'a> {
     /// Some of the rows for a while.
     #[inline(always)]
     pub fn some_rows(&mut self, first: usize, rows: usize) -> Table<'_> {
-        assert!(first + rows <= self.rows);
-        // SAFETY: the address is inside the first column, or just behind it.
-        let first = unsafe { self.first.add(first) };
+        assert!(first <= self.rows && rows <= self.rows - first);
+        let first = self.first.wrapping_add(first);
         Table { first, rows, data: PhantomData, ..*self }
     }
 
@@ -100,8 +100,8 @@ impl<'a> Table<'a> {
     #[inline(always)]
     pub fn split_columns(self, at: usize) -> (Self, Self) {
         assert!(at <= self.columns);
-        // SAFETY: the address is inside the slice, or the end of its last column.
-        let right = unsafe { self.first.add(at * self.stride) };
+        // where no column is left, the address may lie outside, and nothing is read there
+        let right = self.first.wrapping_add(at * self.stride);
         let columns = self.columns - at;
         (Self { columns: at, ..self }, Self { first: right, columns, ..self })
     }
@@ -109,8 +109,7 @@ impl<'a> Table<'a> {
     /// The rows before `at`, and the others.
     pub fn split_rows(self, at: usize) -> (Self, Self) {
         assert!(at <= self.rows);
-        // SAFETY: the address is inside the first column, or just behind it.
-        let right = unsafe { self.first.add(at) };
+        let right = self.first.wrapping_add(at);
         let rows = self.rows - at;
         (Self { rows: at, ..self }, Self { first: right, rows, ..self })
     }
@@ -132,6 +131,21 @@ mod tests {
         let [a, b] = upper.into_columns::<2>();
         assert_eq!((&*a, &*b), (&[4.0, 5.0][..], &[8.0, -9.0][..]));
         assert_eq!(data[9], -9.0);
+    }
+
+    #[test]
+    fn what_is_behind_the_last_column_of_shifted_rows_is_empty() {
+        let mut data = [0.0; 8];
+        let (_, lower) = Table::new(&mut data, 4, 4).split_rows(3);
+        let (left, none) = lower.split_columns(2);
+        assert_eq!((left.columns(), none.columns(), none.rows()), (2, 0, 1));
+        assert!(none.into_columns::<3>().iter().all(|column| column.is_empty()));
+    }
+
+    #[test]
+    #[should_panic(expected = "first <= self.rows")]
+    fn rows_outside_the_table_are_refused() {
+        Table::new(&mut [0.0; 8], 4, 4).some_rows(usize::MAX, 2);
     }
 
     #[test]

@@ -92,6 +92,22 @@ fn undo_damping<const D: usize>(
     }
 }
 
+/// Applies walls and prescribed velocities to the velocities of a grid that was mapped outside a
+/// step; the forces of the last step stay.
+pub fn hold_velocities<const D: usize>(
+    background: &mut Background<D>,
+    conditions: &Conditions,
+    team: &Team,
+) {
+    let Nodes { velocity, increment, .. } = &mut background.nodes;
+    increment.copy_from_slice(velocity);
+    hold_at_boundaries(background, conditions, team);
+    let Nodes { velocity, increment, .. } = &mut background.nodes;
+    for (velocity, held) in velocity.iter_mut().zip(increment) {
+        velocity.set_vector::<D>(held.vector());
+    }
+}
+
 /// Turns the momentum of the second scatter into velocity and applies walls and prescribed
 /// velocities to it.
 pub fn apply_boundaries_again<const D: usize>(

@@ -128,8 +128,10 @@ impl<const D: usize> Kernel for Check<'_, '_, '_, D> {
         for d in 0..D {
             finite.see_all(chunk.column(layout.position + d));
         }
-        for c in layout.strain_energy + 1..layout.state.first {
-            finite.see_all(chunk.column(c));
+        for columns in layout.optional() {
+            for c in 0..columns.count {
+                finite.see_all(chunk.column(columns.first + c));
+            }
         }
         for (columns, values) in ends(&layout, s) {
             for c in 0..columns.count {

@@ -4,15 +4,16 @@
 //! |---|---|---|---|---|---|
 //! | particles come or go | yes | no | no | no | no |
 //! | shape functions change | no | no | no | no | no |
-//! | a field is written | no | yes | no | no | no |
-//! | body forces are written | no | yes | yes | no | yes |
 //! | a field is opened for writing | no | yes | no | yes | no |
-//! | views for writing are closed | yes | yes | yes | no | yes |
+//! | body forces are opened for writing | no | yes | yes | yes | yes |
+//! | fields are closed | yes | yes | yes | no | yes |
 //! | loads change | yes | yes | yes | no | yes |
-//! | a step is done | yes | yes | yes | yes | yes |
+//! | particles are sorted | yes | set | set | no | yes |
+//! | a step is done | yes | yes | yes | set | set |
 //! | a step is taken back | yes | yes | yes | no | yes |
 //!
-//! ("yes" means: as it was.) The grid is mapped again when it is read.
+//! ("yes": as it was; "no": not any more; "set": from now on.) The grid is mapped again when it is
+//! read.
 
 use super::time_step::Limits;
 
@@ -29,11 +30,13 @@ pub struct Freshness {
     mapped: Option<f64>,
     /// Limits of the next time step.
     limits: Option<Limits>,
+    /// How often particles were sorted.
+    sorts: u64,
 }
 
 impl Default for Freshness {
     fn default() -> Self {
-        Self { checked: true, grouped: false, marked: false, mapped: None, limits: None }
+        Self { checked: true, grouped: false, marked: false, mapped: None, limits: None, sorts: 0 }
     }
 }
 
@@ -47,12 +50,6 @@ impl Freshness {
     pub fn shapes_changed(&mut self) {
         self.checked = false;
         self.particles_came_or_went();
-    }
-
-    /// The host wrote a field of particles.
-    pub fn field_written(&mut self, field: &str) {
-        self.field_opened(field);
-        self.mapped = None;
     }
 
     /// The host may write a field of particles from now on; for the grid that counts when it is
@@ -70,11 +67,6 @@ impl Freshness {
         self.mapped = None;
     }
 
-    /// The host set stresses and state.
-    pub fn stresses_set(&mut self) {
-        self.field_written("stress");
-    }
-
     /// A load on the particles came or went.
     pub fn loads_changed(&mut self) {
         self.mapped = None;
@@ -88,7 +80,13 @@ impl Freshness {
     /// Particles are about to be moved into the runs of their blocks.
     pub fn locating(&mut self) {
         // until it is done: without memory the runs would not belong to the new blocks
-        self.grouped = false;
+        (self.grouped, self.mapped) = (false, None);
+        self.sorts += 1;
+    }
+
+    /// How often particles were sorted.
+    pub fn sorts(&self) -> u64 {
+        self.sorts
     }
 
     /// All particles stand in the runs of their blocks.

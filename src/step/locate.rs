@@ -103,7 +103,6 @@ pub fn locate<const D: usize>(
             mark_moved(bodies, background, options, team);
         }
         if bodies.iter().all(|body| body.particles.moved.iter().all(|word| *word == 0)) {
-            background.blocks.no_change();
             freshness.located();
             return Ok(());
         }
@@ -126,7 +125,6 @@ fn carry_out<const D: usize>(
     plan: &mut Plan<D>,
     team: &Team,
 ) -> Result<()> {
-    background.blocks.no_change();
     if plan.blocks_change {
         match options.grid_policy {
             GridPolicy::Static => {}

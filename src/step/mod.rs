@@ -67,7 +67,7 @@ pub use order::StepOrder;
 
 use crate::error::Result;
 
-use apply_boundaries::{apply_boundaries, apply_boundaries_again};
+use apply_boundaries::{apply_boundaries, apply_boundaries_again, hold_velocities};
 use apply_tractions::{apply_tractions, report_tractions};
 use average_dilation::average_dilation;
 use filter_velocities::{filter_again, filter_start, filter_velocities};
@@ -83,6 +83,7 @@ use update_stress::Outcome;
 
 /// One step of length `dt` [s]. An error means that nothing was done.
 pub fn step<const D: usize>(world: &mut Parts<D>, dt: f64) -> Result<Outcome> {
+    world.background.blocks.no_change();
     sort(world)?;
     if world.method.options.retries > 0 {
         save_start(&world.bodies, &mut world.conditions, &mut world.buffers.start)?;
@@ -103,6 +104,7 @@ pub fn map<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     sort(world)?;
     scatter(world, world.clock.time);
     update(world, 0.0);
+    hold_velocities(&mut world.background, &world.conditions, &world.team);
     world.freshness.mapped_at(world.clock.time);
     Ok(())
 }

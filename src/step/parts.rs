@@ -106,6 +106,7 @@ impl<const D: usize> Parts<D> {
         let mut background = Background::new(space, options.shape.nodes());
         if options.grid_policy == GridPolicy::Static {
             background.set_owners(&blocks_of_box(&options, &space)?, false)?;
+            background.blocks.no_change();
         }
         let kernels = Kernels::new(&options);
         Ok(Self {

@@ -188,18 +188,19 @@ impl<const D: usize> Parts<D> {
             particle: Some(particles.id[k]),
             ..self.clock.place()
         };
-        for c in 0..layout.components() {
-            let (rule, name) = layout.rule_of(D, c);
-            let positive = rule == Rule::Positive;
-            let good = |v: &f64| v.is_finite() && (!positive || *v > 0.0);
-            if let Some(k) = particles.column(c).iter().position(|v| !good(v)) {
-                let (name, rule) = (name.to_string_lossy(), rule.text());
-                let text = format!(
-                    "{name} of particle {} must be {rule}, got {}",
-                    particles.id[k],
-                    particles.column(c)[k]
-                );
-                return Err(Error::invalid(text).at(place(k)));
+        for (columns, rule, name) in layout.rules(D) {
+            let good = |v: &f64| v.is_finite() && (rule == Rule::Finite || *v > 0.0);
+            for column in (0..columns.count).map(|c| particles.column(columns.first + c)) {
+                if let Some(k) = column.iter().position(|v| !good(v)) {
+                    let text = format!(
+                        "{} of particle {} must be {}, got {}",
+                        name.to_string_lossy(),
+                        particles.id[k],
+                        rule.text(),
+                        column[k]
+                    );
+                    return Err(Error::invalid(text).at(place(k)));
+                }
             }
         }
         let space = &self.background.space;

@@ -371,6 +371,11 @@ impl World {
         on!(&self, s => s.freshness.is_grouped())
     }
 
+    /// How often particles were sorted so far; what only reads or is refused leaves it as it is.
+    pub fn sorts(&self) -> u64 {
+        on!(&self, s => s.freshness.sorts())
+    }
+
     /// Whether the grid is that of the last step, and nothing has been changed since that it should
     /// show.
     pub fn is_fresh(&self) -> bool {

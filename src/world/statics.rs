@@ -74,7 +74,15 @@ impl World {
 
     /// The same for a world that is [fresh](World::is_fresh).
     pub fn equilibrium_of_grid(&self) -> Result<Equilibrium> {
-        on!(&self, s => s.equilibrium())
+        on!(&self, s => {
+            let mapped = match s.freshness.mapped() {
+                None if self.is_poisoned() => Some(s.clock.time), // of a grid that is half done
+                mapped => mapped,
+            };
+            s.equilibrium(mapped.ok_or_else(|| Error::invalid(
+                "the grid does not show the particles as they are: refresh the world first",
+            ))?)
+        })
     }
 
     /// Makes steps of the stable length until the world is in equilibrium, or until `max_steps` or
@@ -173,12 +181,8 @@ struct Ground {
 }
 
 impl<const D: usize> Parts<D> {
-    fn equilibrium(&self) -> Result<Equilibrium> {
-        let Some(mapped) = self.freshness.mapped() else {
-            return Err(Error::invalid(
-                "the grid does not show the particles as they are: refresh the world first",
-            ));
-        };
+    /// From a grid that holds the forces of the time `mapped` [s].
+    fn equilibrium(&self, mapped: f64) -> Result<Equilibrium> {
         let totals = self.totals(None);
         let stored = totals.strain_energy.abs().max(self.energy_of_stresses()?);
         let [unbalanced_force, external_force] = self.forces(self.gravity(mapped));
@@ -326,7 +330,8 @@ impl<const D: usize> Parts<D> {
             }
             return Err(Error { status: Status::InvalidArgument, ..error });
         }
-        self.freshness.stresses_set();
+        self.freshness.field_opened("stress");
+        self.freshness.fields_closed();
         Ok(())
     }
 }

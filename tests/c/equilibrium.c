@@ -95,6 +95,69 @@ static void stresses(lahar_context *context, const lahar_material *material) {
     }
 }
 
+static void add_floor(lahar_world *world) {
+  lahar_wall wall;
+  OK(lahar_wall_init(&wall, sizeof wall));
+  wall.axis = 1;
+  wall.kind = LAHAR_WALL_STICKY;
+  OK(lahar_wall_add(world, &wall, NULL));
+}
+
+/* Velocity at a node of the floor. */
+static void floor_velocity(lahar_world *world, double v[2]) {
+  const double point[2] = {0.5, 0};
+  OK(lahar_grid_sample(world, "velocity", 1, point, v, NULL));
+}
+
+/* After a step the grid is that of the step, by whatever way stresses were written before; and what is mapped anew keeps to
+ * the floor. */
+static void floors(lahar_context *context, const lahar_material *material) {
+  const double pressed[6] = {-1e3, -1e3, 0, 0, 0, 0}, none[2] = {0, 0};
+  double v[2][2], forces[2];
+  int way;
+  for (way = 0; way < 2; ++way) {
+    lahar_world *world = make_free_block(context, material);
+    add_floor(world);
+    if (way == 0) write(world, "stress", 6, pressed);
+    if (way == 1) {
+      lahar_view_info info = {0};
+      lahar_view *view = open_stress(world, &info);
+      press(&info);
+      lahar_view_free(view);
+    }
+    OK(lahar_world_step_auto(world, NULL));
+    floor_velocity(world, v[way]);
+    forces[way] = unbalanced(world);
+    write(world, "body_force", 2, none);
+    {
+      int64_t node = -1;
+      const int64_t index[3] = {2, 0, 0};
+      double held[2] = {1, 1};
+      OK(lahar_grid_find_node(world, index, &node));
+      OK(lahar_grid_read(world, "velocity", 1, &node, held));
+      CHECK(held[0] == 0 && held[1] == 0);
+    }
+    lahar_world_free(world);
+  }
+  CHECK(!memcmp(v[0], v[1], sizeof v[0]) && forces[0] == forces[1]);
+}
+
+/* A refused step leaves views as they are, also after a write that moves nothing. */
+static void refused(lahar_context *context, const lahar_material *material) {
+  const double pressed[6] = {-1e3, -1e3, 0, 0, 0, 0};
+  lahar_view_info info = {0};
+  lahar_view *view = NULL;
+  lahar_world *world = make_free_block(context, material);
+  OK(lahar_world_step_auto(world, NULL));
+  OK(lahar_body_view(world, 0, "stress", LAHAR_ACCESS_READ, &view));
+  write(world, "stress", 6, pressed);
+  EXPECT(lahar_world_step(world, 1e3), LAHAR_ERROR_STEP_TOO_LARGE, "exceeds");
+  info.struct_size = sizeof info;
+  OK(lahar_view_data(view, &info));
+  lahar_view_free(view);
+  lahar_world_free(world);
+}
+
 int main(void) {
   const double down[3] = {0, -10, 0}, none[2] = {0, 0}, force[2] = {0, -10};
   lahar_context *context = NULL;
@@ -134,6 +197,8 @@ int main(void) {
   lahar_world_free(world);
 
   stresses(context, material);
+  floors(context, material);
+  refused(context, material);
   lahar_material_free(material);
   lahar_context_free(context);
   return failures != 0;

@@ -51,7 +51,7 @@ fn a_question_does_not_change_what_the_last_step_reports() {
 }
 
 #[test]
-fn a_world_that_is_asked_between_its_steps_goes_the_same_way() {
+fn a_world_whose_particles_stay_in_their_blocks_may_be_asked_between_its_steps() {
     let go = |ask: bool| {
         let (mut world, body) = loaded_block();
         for n in 0..40 {

@@ -148,10 +148,13 @@ fn arrows_between_the_rooms_of_the_engine_point_down() {
         let room = path["src/".len()..].split(['/', '.']).next().unwrap_or_default();
         let own = line_of(room).unwrap_or_else(|| panic!("{path}: add `{room}` to ROOMS"));
         breaks.extend(offending_lines(std::slice::from_ref(path), |lines, index| {
-            code(lines[index]).split("crate::").skip(1).any(|rest| {
-                let named = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next();
-                named.and_then(line_of).is_some_and(|line| line > own)
-            })
+            let line = code(lines[index]);
+            // a list of rooms in one line could hide one
+            line.contains("use crate::{")
+                || line.split("crate::").skip(1).any(|rest| {
+                    let named = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next();
+                    named.and_then(line_of).is_some_and(|line| line > own)
+                })
         }));
     }
     assert!(breaks.is_empty(), "arrows that point up:\n{}", breaks.join("\n"));
