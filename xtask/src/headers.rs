@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// Files of `src/ffi` in the order of the header, where a type stands before its first use, and the
 /// choices whose constants stand there.
-const SECTIONS: [(&str, &[List]); 17] = [
+const SECTIONS: &[(&str, &[List])] = &[
     ("status", &[Status::LIST]),
     ("version", &[]),
     ("context", &[LogLevel::LIST]),
