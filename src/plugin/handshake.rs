@@ -20,7 +20,7 @@ use std::sync::Mutex;
 const MOST: u32 = 4096;
 
 /// Names that particles' own fields, and columns of files, have.
-pub(crate) const RESERVED: [&str; 14] = [
+pub(crate) const RESERVED: &[&str] = &[
     "id",
     "body",
     "position",
