@@ -13,7 +13,7 @@ pub mod tiles;
 
 pub use blocks::{Blocks, NONE};
 pub use key::{EDGE, Key, block_nodes};
-pub use nodes::{Nodes, Record};
+pub use nodes::{Held, Nodes, Record};
 pub use space::Space;
 pub use tiles::{Run, TileNode, Tiles};
 

@@ -15,6 +15,30 @@ pub const FIRST: usize = 1;
 /// First lane of the vector of the second record: force, on the way back what a gather needs.
 pub const SECOND: usize = 5;
 
+/// The components of a velocity that conditions hold, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Held(pub u8);
+
+impl Held {
+    /// Whether component a is held.
+    pub fn has(self, a: usize) -> bool {
+        self.0 >> a & 1 == 1
+    }
+
+    /// Holds component a too.
+    pub fn add(&mut self, a: usize) {
+        self.0 |= 1 << a;
+    }
+}
+
+impl std::ops::BitOr for Held {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
 /// A number and a vector of a node; in two dimensions the third component is zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Record([f64; 4]);
@@ -68,17 +92,15 @@ impl Record {
         Self([0.0, x / by, y / by, z / by])
     }
 
-    /// Notes that a condition holds component a of the node; of the record of changes alone, whose
-    /// number is free. The grid update clears it.
-    pub fn hold(&mut self, a: usize) {
-        if !self.is_held(a) {
-            self.0[0] += f64::from(1 << a);
-        }
+    /// Notes what conditions hold of the node: walls in the record of forces, others in that of
+    /// changes, whose numbers are free.
+    pub fn set_held(&mut self, held: Held) {
+        self.0[0] = f64::from(held.0);
     }
 
-    /// Whether [`Record::hold`] was called for component a.
-    pub fn is_held(&self, a: usize) -> bool {
-        self.0[0] as i32 >> a & 1 == 1
+    /// What [`Record::set_held`] noted since the last scatter.
+    pub fn held(&self) -> Held {
+        Held(self.0[0] as u8)
     }
 
     /// Both records of two nodes.
@@ -129,10 +151,10 @@ pub struct Nodes {
     /// Mass and momentum [kg, kg m/s] after the scatter, mass and velocity [kg, m/s] after the grid
     /// update.
     pub velocity: Vec<Record>,
-    /// Change of velocity after the grid update, in MUSL then the second velocity, in XPIC and FMPM
+    /// Change of velocity after the grid update, and what prescribed velocities hold; in MUSL then the second velocity, in XPIC and FMPM
     /// the velocity that particles take [m/s].
     pub increment: Vec<Record>,
-    /// Force of the particles on the node [N].
+    /// Force of the particles on the node [N], and what walls hold of it.
     pub force: Vec<Record>,
 }
 
@@ -188,15 +210,5 @@ mod tests {
         assert_eq!(nodes.increment[3].vector(), [2.0, 3.0, 0.0]);
         nodes.clear(2..4);
         assert_eq!((nodes.len(), nodes.velocity[3]), (5, Record::ZERO));
-    }
-
-    #[test]
-    fn a_component_is_held_once() {
-        let mut record = Record::of_vector([1.0, 2.0, 3.0]);
-        record.hold(2);
-        record.hold(2);
-        record.hold(0);
-        assert_eq!([0, 1, 2].map(|a| record.is_held(a)), [true, false, true]);
-        assert_eq!(record.vector(), [1.0, 2.0, 3.0]);
     }
 }

@@ -13,4 +13,4 @@ pub use region::BoxRegion;
 pub use registry::{Condition, Conditions, Entry, Holding, List, Listed};
 pub use table::Table;
 pub use traction::{Loaded, Surface, Traction};
-pub use wall::{Wall, WallKind};
+pub use wall::{Reaching, Wall, WallKind};

@@ -109,43 +109,39 @@ impl Condition for Prescribed {
     fn hold<const D: usize>(
         &mut self,
         background: &mut Background<D>,
-        &Holding { time, dt, undamped }: &Holding,
+        &Holding { time, dt }: &Holding,
     ) -> Option<[f64; 3]> {
         let target = self.condition.velocity.at(time + dt);
         let mut impulse = [0.0; 3];
-        for_each_held(&self.condition, background, |a, velocity, increment, force| {
-            let (mass, before) = (velocity.mass(), velocity.component(a));
-            let change = target[a] - before;
-            // once for each component of a node, whatever number of conditions hold it
-            if let Some(gravity) = undamped
-                && before != 0.0
-                && !increment.is_held(a)
-            {
-                increment.hold(a);
-                let whole = dt * (force.component(a) + mass * gravity[a]);
-                impulse[a] -= whole - mass * increment.component(a);
-            }
+        for_each_held(&self.condition, background, |a, velocity, increment| {
+            let change = target[a] - velocity.component(a);
             *velocity.component_mut(a) = target[a]; // [CND-3]
             *increment.component_mut(a) += change;
-            impulse[a] += mass * change;
+            let mut held = increment.held();
+            held.add(a);
+            increment.set_held(held);
+            impulse[a] += velocity.mass() * change;
         });
         self.target = target;
         Some(impulse)
     }
 
-    fn hold_again<const D: usize>(&self, background: &mut Background<D>) {
-        for_each_held(&self.condition, background, |a, _, increment, _| {
+    fn hold_again<const D: usize>(&self, background: &mut Background<D>) -> Option<[f64; 3]> {
+        let mut impulse = [0.0; 3];
+        for_each_held(&self.condition, background, |a, velocity, increment| {
+            impulse[a] += velocity.mass() * (self.target[a] - increment.component(a));
             *increment.component_mut(a) = self.target[a];
         });
+        Some(impulse)
     }
 }
 
-/// Calls `visit` with every component that a condition holds, and the velocity, increment and force
-/// of its node.
+/// Calls `visit` with every component that a condition holds, and the velocity and increment of its
+/// node.
 fn for_each_held<const D: usize>(
     condition: &PrescribedVelocity,
     background: &mut Background<D>,
-    mut visit: impl FnMut(usize, &mut Record, &mut Record, &Record),
+    mut visit: impl FnMut(usize, &mut Record, &mut Record),
 ) {
     let Background { space, blocks, nodes, .. } = background;
     for slot in blocks.owned() {
@@ -154,8 +150,7 @@ fn for_each_held<const D: usize>(
             let node = first + node;
             if nodes.velocity[node].mass() > 0.0 {
                 for a in (0..D).filter(|a| condition.holds(*a)) {
-                    let (v, dv) = (&mut nodes.velocity[node], &mut nodes.increment[node]);
-                    visit(a, v, dv, &nodes.force[node]);
+                    visit(a, &mut nodes.velocity[node], &mut nodes.increment[node]);
                 }
             }
         });

@@ -12,8 +12,6 @@ pub struct Holding {
     pub time: f64,
     /// Its length [s].
     pub dt: f64,
-    /// Gravity [m/s²] where local damping is on: the force that it took follows.
-    pub undamped: Option<[f64; 3]>,
 }
 
 /// What the registry asks of every kind of condition.
@@ -41,8 +39,10 @@ pub trait Condition {
         None
     }
 
-    /// Does the same to second velocities, which stand in the increments.
-    fn hold_again<const D: usize>(&self, _background: &mut Background<D>) {}
+    /// Does the same to another field of velocities of the step, which stand in the increments.
+    fn hold_again<const D: usize>(&self, _background: &mut Background<D>) -> Option<[f64; 3]> {
+        None
+    }
 
     /// Whether it goes when this body goes.
     fn belongs_to(&self, _body: i64) -> bool {
@@ -170,9 +170,19 @@ macro_rules! conditions {
                 })+
             }
 
-            /// The same for second velocities.
-            pub fn hold_again<const D: usize>(&self, background: &mut Background<D>) {
-                $(self.$name.iter().for_each(|entry| entry.condition.hold_again(background));)+
+            /// The same for another field of velocities. If particles take it, `dt` [s] is the
+            /// step, and the forces count it.
+            pub fn hold_again<const D: usize>(
+                &mut self,
+                background: &mut Background<D>,
+                dt: Option<f64>,
+            ) {
+                $(for entry in self.$name.iter_mut() {
+                    let impulse = entry.condition.hold_again(background);
+                    if let Some((impulse, dt)) = impulse.zip(dt) {
+                        (0..D).for_each(|a| entry.force[a] += impulse[a] / dt);
+                    }
+                })+
             }
 
             /// Forgets the conditions on a body that is removed.

@@ -4,14 +4,13 @@
 //! at most its reach: the radius of the shape function's support less one cell, 0 for linear and
 //! h/2 for quadratic shapes. With the wall on a node plane (linear) or a half-cell plane
 //! (quadratic) no free node's function then reaches the wall; elsewhere the wall acts up to one
-//! cell late. All nodes behind it are held too; several walls act in the order in which they were
-//! added.
+//! cell late. All nodes behind it are held too. [`law`](super::law) says what several walls do
+//! together.
 
 use std::ops::Range;
 
-use super::Condition;
-use super::law::{self, AxisNormal};
-use crate::background::{EDGE, Key, Space, block_nodes};
+use super::{Condition, Entry};
+use crate::background::{EDGE, Key, Space};
 use crate::choice::choices;
 use crate::error::{Error, Result};
 
@@ -79,36 +78,13 @@ impl Wall {
         Ok(())
     }
 
-    /// Velocity that the wall leaves a node with velocity `v`.
-    #[inline(always)]
-    pub fn constrain<const D: usize>(&self, v: [f64; D]) -> [f64; D] {
-        let normal = AxisNormal { axis: self.axis, side: f64::from(self.side) };
-        law::constrain(self.kind, self.friction, normal, v)
-    }
-
-    /// Calls `visit` with the nodes of block `key` that the wall reaches, row by row.
-    #[inline(always)]
-    pub fn reached<const D: usize>(
-        &self,
-        space: &Space<D>,
-        key: &Key<D>,
-        mut visit: impl FnMut(Range<usize>),
-    ) {
-        let reached = self.reached_layers(space, key);
-        if reached.is_empty() {
-            return;
-        }
-        let pitch = EDGE.pow((D - 1 - self.axis) as u32);
-        for slab in (0..block_nodes(D)).step_by(EDGE * pitch) {
-            for layer in reached.clone() {
-                let first = slab + layer * pitch;
-                visit(first..first + pitch);
-            }
-        }
+    /// The part of a velocity along the wall's normal [m/s]; negative if it approaches.
+    pub fn along<const D: usize>(&self, v: &[f64; D]) -> f64 {
+        f64::from(self.side) * v[self.axis]
     }
 
     /// Layers of nodes of block `key`, along the wall's axis, that the wall reaches.
-    fn reached_layers<const D: usize>(&self, space: &Space<D>, key: &Key<D>) -> Range<usize> {
+    pub fn reached<const D: usize>(&self, space: &Space<D>, key: &Key<D>) -> Range<usize> {
         let at = (self.position - space.origin[self.axis]) / space.spacing;
         let reach = space.wall_reach + ROUND_OFF; // [BND-3]
         let lowest = f64::from(key.at[self.axis]) * EDGE as f64;
@@ -123,4 +99,42 @@ impl Wall {
 
 impl Condition for Wall {
     const WHAT: &'static str = "wall";
+}
+
+/// The walls that reach a node of a block, with their numbers.
+#[derive(Clone)]
+pub struct Reaching<'a, const D: usize> {
+    walls: &'a [Entry<Wall>],
+    next: usize,
+    space: &'a Space<D>,
+    key: &'a Key<D>,
+    node: usize,
+}
+
+impl<'a, const D: usize> Reaching<'a, D> {
+    /// Those that reach the node of this number of a block.
+    pub fn new(
+        walls: &'a [Entry<Wall>],
+        space: &'a Space<D>,
+        key: &'a Key<D>,
+        node: usize,
+    ) -> Self {
+        Self { walls, next: 0, space, key, node }
+    }
+}
+
+impl<'a, const D: usize> Iterator for Reaching<'a, D> {
+    type Item = (usize, &'a Wall);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while let Some(entry) = self.walls.get(self.next) {
+            let (n, wall) = (self.next, &entry.condition);
+            self.next += 1;
+            let layer = self.node / EDGE.pow((D - 1 - wall.axis) as u32) % EDGE;
+            if wall.reached(self.space, self.key).contains(&layer) {
+                return Some((n, wall));
+            }
+        }
+        None
+    }
 }

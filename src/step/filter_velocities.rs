@@ -21,99 +21,122 @@ use crate::transfer::{TransferKind, filter};
 /// Nodes that one thread takes at a time.
 const NODES: usize = 1024;
 
-/// Leaves in the increments the velocities that particles take; with FMPM they are the velocities
-/// of the grid too.
-pub fn filter_velocities<const D: usize>(
-    bodies: &mut [Body],
-    background: &mut Background<D>,
-    method: &Method<D>,
-    conditions: &Conditions,
-    filtering: &mut Filtering,
-    team: &Team,
-) {
-    let xpic = method.options.transfer == TransferKind::Xpic;
-    if !filtering.begins(method, &background.nodes) {
-        return;
-    }
-    filtering.for_nodes(&mut background.nodes, team, |terms, v, increment| {
-        terms.start = *v;
-        for a in (0..D).filter(|_| xpic) {
-            *terms.start.component_mut(a) -= increment.component(a);
+/// What filters: what a term needs on its way to the particles and back.
+pub struct Filter<'a, const D: usize> {
+    /// The bodies.
+    pub bodies: &'a mut [Body],
+    /// The grid.
+    pub background: &'a mut Background<D>,
+    /// How it computes.
+    pub method: &'a Method<D>,
+    /// What holds the velocities.
+    pub conditions: &'a mut Conditions,
+    /// The terms of the nodes.
+    pub filtering: &'a mut Filtering,
+    /// Room for what walls take.
+    pub impulses: &'a mut Vec<[f64; 3]>,
+    /// Who computes.
+    pub team: &'a Team,
+}
+
+impl<const D: usize> Filter<'_, D> {
+    /// Leaves in the increments the velocities that particles take in a step of `dt` [s]; with FMPM
+    /// they are the velocities of the grid too. Σ m u changes where u is held: what is taken of the
+    /// last term, and of the sum, becomes momentum of the particles beside the first impulse. (What
+    /// is taken of the terms before, the next one, v + u − S⁺ S u, gives back.)
+    pub fn velocities(&mut self, dt: f64) {
+        if !self.begins() {
+            return;
         }
-    });
-    sum_terms(bodies, background, method, conditions, filtering, team);
-    filtering.for_nodes(&mut background.nodes, team, |terms, v, increment| {
-        for a in 0..D {
-            let change = v.component(a) - terms.start.component(a);
-            *increment.component_mut(a) = terms.sum.component(a) + change;
-        }
-    });
-    hold_at_boundaries(background, conditions, team);
-    if !xpic {
-        filtering.for_nodes(&mut background.nodes, team, |_, v, increment| {
-            v.set_vector::<D>(increment.vector());
-        });
-    }
-}
-
-/// Filters the velocities at the start of a step, of which USF takes gradients.
-pub fn filter_start<const D: usize>(
-    bodies: &mut [Body],
-    background: &mut Background<D>,
-    method: &Method<D>,
-    conditions: &Conditions,
-    filtering: &mut Filtering,
-    team: &Team,
-) {
-    if filtering.begins(method, &background.nodes) {
-        filtering.for_nodes(&mut background.nodes, team, |terms, v, _| terms.start = *v);
-        sum_terms(bodies, background, method, conditions, filtering, team);
-        filtering.for_nodes(&mut background.nodes, team, |terms, v, _| {
-            v.set_vector::<D>(terms.sum.vector());
-        });
-    }
-}
-
-/// Filters the second velocities, of which MUSL takes gradients.
-pub fn filter_again<const D: usize>(
-    bodies: &mut [Body],
-    background: &mut Background<D>,
-    method: &Method<D>,
-    conditions: &Conditions,
-    filtering: &mut Filtering,
-    team: &Team,
-) {
-    if filtering.begins(method, &background.nodes) {
-        filtering.for_nodes(&mut background.nodes, team, |terms, _, second| terms.start = *second);
-        sum_terms(bodies, background, method, conditions, filtering, team);
-    }
-}
-
-/// Leaves the sum of the terms that begin with `start` in `sum` and in the increments.
-fn sum_terms<const D: usize>(
-    bodies: &mut [Body],
-    background: &mut Background<D>,
-    method: &Method<D>,
-    conditions: &Conditions,
-    filtering: &mut Filtering,
-    team: &Team,
-) {
-    filtering.for_nodes(&mut background.nodes, team, |terms, _, u| *u = terms.start);
-    hold_at_boundaries(background, conditions, team);
-    filtering.for_nodes(&mut background.nodes, team, |terms, _, u| terms.sum = *u);
-    let pass = Pass { gather: Gather::Filter, dt: 0.0, then: Then::Nothing };
-    for _ in 1..method.options.filter_order {
-        (method.kernels.pass)(bodies, background, method, team, &pass);
-        velocities_to_grid(background, bodies, method, team, Scattered::Filtered);
-        filtering.for_nodes(&mut background.nodes, team, |terms, v, back| {
-            let inverse = if v.mass() > 0.0 { 1.0 / v.mass() } else { 0.0 };
-            for a in 0..D {
-                let (sum, start) = (terms.sum.component(a), terms.start.component(a));
-                *back.component_mut(a) = filter::add_term(sum, start, inverse * back.component(a));
+        let xpic = self.method.options.transfer == TransferKind::Xpic;
+        self.for_nodes(|terms, v, increment| {
+            terms.start = *v;
+            for a in (0..D).filter(|_| xpic) {
+                *terms.start.component_mut(a) -= increment.component(a);
             }
         });
-        hold_at_boundaries(background, conditions, team);
-        filtering.for_nodes(&mut background.nodes, team, |terms, _, u| terms.sum = *u);
+        self.sum_terms(Some(dt));
+        self.for_nodes(|terms, v, increment| {
+            for a in 0..D {
+                let change = v.component(a) - terms.start.component(a);
+                *increment.component_mut(a) = terms.sum.component(a) + change;
+            }
+        });
+        self.hold(Some(dt));
+        if !xpic {
+            self.for_nodes(|_, v, increment| v.set_vector::<D>(increment.vector()));
+        }
+    }
+
+    /// Filters the velocities at the start of a step, of which USF takes gradients.
+    pub fn start(&mut self) {
+        if self.begins() {
+            self.for_nodes(|terms, v, _| terms.start = *v);
+            self.sum_terms(None);
+            self.for_nodes(|terms, v, _| v.set_vector::<D>(terms.sum.vector()));
+        }
+    }
+
+    /// Filters the second velocities, of which MUSL takes gradients.
+    pub fn again(&mut self) {
+        if self.begins() {
+            self.for_nodes(|terms, _, second| terms.start = *second);
+            self.sum_terms(None);
+        }
+    }
+
+    /// Leaves the sum of the terms that begin with `start` in `sum` and in the increments; with a
+    /// step of `dt` [s] forces count what is taken of the last one.
+    fn sum_terms(&mut self, dt: Option<f64>) {
+        let order = self.method.options.filter_order;
+        let counted = |term: i32| dt.filter(|_| term == order);
+        self.for_nodes(|terms, _, u| *u = terms.start);
+        self.hold(counted(1));
+        self.for_nodes(|terms, _, u| terms.sum = *u);
+        let pass = Pass { gather: Gather::Filter, dt: 0.0, then: Then::Nothing };
+        for term in 2..=order {
+            let Self { bodies, background, method, team, .. } = self;
+            (method.kernels.pass)(bodies, background, method, team, &pass);
+            velocities_to_grid(background, bodies, method, team, Scattered::Filtered);
+            self.for_nodes(|terms, v, back| {
+                let inverse = if v.mass() > 0.0 { 1.0 / v.mass() } else { 0.0 };
+                for a in 0..D {
+                    let (sum, start) = (terms.sum.component(a), terms.start.component(a));
+                    let back = back.component_mut(a);
+                    *back = filter::add_term(sum, start, inverse * *back);
+                }
+            });
+            self.hold(counted(term));
+            self.for_nodes(|terms, _, u| terms.sum = *u);
+        }
+    }
+
+    /// Takes from u what is held.
+    fn hold(&mut self, dt: Option<f64>) {
+        hold_at_boundaries(self.background, self.conditions, self.impulses, self.team, dt);
+    }
+
+    /// Makes room for the nodes if the transfer is filtered; whether it is.
+    fn begins(&mut self) -> bool {
+        let filtered = self.method.options.transfer.is_filtered();
+        if filtered {
+            let empty = Terms { start: Record::ZERO, sum: Record::ZERO };
+            self.filtering.0.clear();
+            self.filtering.0.resize(self.background.nodes.len(), empty);
+        }
+        filtered
+    }
+
+    /// Calls `work` with the terms, the velocity and the increment of every node.
+    fn for_nodes(&mut self, work: impl Fn(&mut Terms, &mut Record, &mut Record) + Sync) {
+        let Nodes { velocity, increment, .. } = &mut self.background.nodes;
+        let terms = Cut(&mut self.filtering.0[..], NODES);
+        let records = (terms, Cut(&mut velocity[..], NODES), Cut(&mut increment[..], NODES));
+        self.team.for_each_piece(records, 1, |_, (terms, velocity, increment)| {
+            for ((terms, velocity), increment) in terms.iter_mut().zip(velocity).zip(increment) {
+                work(terms, velocity, increment);
+            }
+        });
     }
 }
 
@@ -128,33 +151,4 @@ struct Terms {
     start: Record,
     /// The sum of the terms so far.
     sum: Record,
-}
-
-impl Filtering {
-    /// Makes room for the nodes if the transfer is filtered; whether it is.
-    fn begins<const D: usize>(&mut self, method: &Method<D>, nodes: &Nodes) -> bool {
-        let filtered = method.options.transfer.is_filtered();
-        if filtered {
-            self.0.clear();
-            self.0.resize(nodes.len(), Terms { start: Record::ZERO, sum: Record::ZERO });
-        }
-        filtered
-    }
-
-    /// Calls `work` with the terms, the velocity and the increment of every node.
-    fn for_nodes(
-        &mut self,
-        nodes: &mut Nodes,
-        team: &Team,
-        work: impl Fn(&mut Terms, &mut Record, &mut Record) + Sync,
-    ) {
-        let Nodes { velocity, increment, .. } = nodes;
-        let (terms, velocity) = (Cut(&mut self.0[..], NODES), Cut(&mut velocity[..], NODES));
-        let records = (terms, velocity, Cut(&mut increment[..], NODES));
-        team.for_each_piece(records, 1, |_, (terms, velocity, increment)| {
-            for ((terms, velocity), increment) in terms.iter_mut().zip(velocity).zip(increment) {
-                work(terms, velocity, increment);
-            }
-        });
-    }
 }

@@ -9,6 +9,7 @@
 //! | 2b | apply the tractions | f_i | [`apply_tractions`] |
 //! | 3 | update the grid | v_i, Δv_i | [`update_grid`] |
 //! | 4 | apply the boundaries | v_i, Δv_i, reactions | [`apply_boundaries`] |
+//! | 4a | damp the grid | v_i, Δv_i | [`update_grid`] |
 //! | 4b | filter the velocities | velocities of particles in XPIC, FMPM | [`filter_velocities`] |
 //! | 4c | average the dilation | the mean tr L_p, of bodies with F-bar | [`average_dilation`] |
 //! | 5 | grid to particles | v_p, x_p, ∇v_p | [`grid_to_particles`] |
@@ -70,15 +71,15 @@ use crate::error::Result;
 use apply_boundaries::{apply_boundaries, apply_boundaries_again, hold_velocities};
 use apply_tractions::{apply_tractions, report_tractions};
 use average_dilation::average_dilation;
-use filter_velocities::{filter_again, filter_start, filter_velocities};
+use filter_velocities::Filter;
 use grid_to_particles::Gather;
 use hooks::HookPoint;
 use locate::{check_radii, locate};
 use particles_to_grid::{Scattered, particles_to_grid, velocities_to_grid};
-use parts::Parts;
+use parts::{Buffers, Parts};
 use pass::{Moment, Pass, Then};
 use retry::save_start;
-use update_grid::update_grid;
+use update_grid::{damp_grid, update_grid};
 use update_stress::Outcome;
 
 /// One step of length `dt` [s]. An error means that nothing was done.
@@ -104,7 +105,8 @@ pub fn map<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     sort(world)?;
     scatter(world, world.clock.time);
     update(world, 0.0);
-    hold_velocities(&mut world.background, &world.conditions, &world.team);
+    let Parts { background, conditions, buffers, team, .. } = world;
+    hold_velocities(background, conditions, &mut buffers.impulses, team, None);
     world.freshness.mapped_at(world.clock.time);
     Ok(())
 }
@@ -130,11 +132,19 @@ fn update<const D: usize>(world: &mut Parts<D>, dt: f64) {
     update_grid(&mut background.nodes, gravity, method, team, dt);
 }
 
-/// Applies walls and prescribed velocities.
+/// Applies walls and prescribed velocities, then damps what they leave.
 fn hold<const D: usize>(world: &mut Parts<D>, dt: f64) {
     let Parts { background, conditions, method, buffers, team, clock, .. } = world;
     let when = (clock.time, dt);
-    apply_boundaries(background, conditions, &method.options, &mut buffers.impulses, team, when);
+    apply_boundaries(background, conditions, method, &mut buffers.impulses, team, when);
+    damp_grid::<D>(&mut background.nodes, method.options.damping, team);
+}
+
+/// What filters the velocities of XPIC and FMPM; other transfers have nothing to filter.
+fn filter<const D: usize>(world: &mut Parts<D>) -> Filter<'_, D> {
+    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
+    let Buffers { filtering, impulses, .. } = buffers;
+    Filter { bodies, background, method, conditions, filtering, impulses, team }
 }
 
 /// From particles to the new velocities of the grid: what all orders have in common.
@@ -145,8 +155,7 @@ fn move_grid<const D: usize>(world: &mut Parts<D>, dt: f64) {
     update(world, dt);
     hold(world, dt);
     world.hook(HookPoint::AfterBoundaries, dt);
-    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
-    filter_velocities(bodies, background, method, conditions, &mut buffers.filtering, team);
+    filter(world).velocities(dt);
 }
 
 /// A pass over the particles; `strained` is the time over which gradients strain them [s], if they
@@ -187,8 +196,8 @@ fn musl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
     take(world, Gather::Velocity, dt, None);
     let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
     velocities_to_grid(background, bodies, method, team, Scattered::Momentum);
-    apply_boundaries_again(background, conditions, team);
-    filter_again(bodies, background, method, conditions, &mut buffers.filtering, team);
+    apply_boundaries_again(background, conditions, &mut buffers.impulses, team);
+    filter(world).again();
     average(world, Gather::SecondGradient);
     take(world, Gather::PositionAndGradient, dt, Some(dt))
 }
@@ -196,7 +205,7 @@ fn musl<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
 /// Update stress first, from the velocities at the start. S. G. Bardenhagen, J. Comput. Phys. 180
 /// (2002) 383–403, doi:10.1006/jcph.2002.7103.
 fn usf<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
-    let outcome = stress_of_start(world, dt);
+    let outcome = stress_of_start(world, dt, 1.0);
     move_grid(world, dt);
     take(world, Gather::Motion, dt, None);
     outcome
@@ -205,20 +214,20 @@ fn usf<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
 /// Half a stress update from the velocities at the start, half from those at the end. J. A. Nairn,
 /// CMES 4 (2003) 649–664, doi:10.3970/cmes.2003.004.649.
 fn usavg<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
-    let first = stress_of_start(world, 0.5 * dt);
+    let first = stress_of_start(world, dt, 0.5);
     move_grid(world, dt);
     average(world, Gather::Gradient);
     first.merge(take(world, Gather::Everything, dt, Some(0.5 * dt)))
 }
 
-/// Updates the stress over `dt` from the velocities that the particles have.
-fn stress_of_start<const D: usize>(world: &mut Parts<D>, dt: f64) -> Outcome {
-    let Parts { bodies, background, method, team, .. } = world;
-    particles_to_grid(background, bodies, method, team);
+/// Updates the stress over a share of the step from the velocities that the particles have.
+fn stress_of_start<const D: usize>(world: &mut Parts<D>, dt: f64, share: f64) -> Outcome {
+    let gravity = world.gravity(world.clock.time + 0.5 * dt); // [CND-2]
+    scatter(world, world.clock.time);
     update(world, 0.0);
-    hold(world, dt);
-    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
-    filter_start(bodies, background, method, conditions, &mut buffers.filtering, team);
+    let Parts { background, conditions, buffers, team, .. } = world;
+    hold_velocities(background, conditions, &mut buffers.impulses, team, Some((gravity, dt)));
+    filter(world).start();
     average(world, Gather::Gradient);
-    take(world, Gather::Gradient, dt, Some(dt))
+    take(world, Gather::Gradient, dt, Some(share * dt))
 }

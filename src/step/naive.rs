@@ -7,8 +7,8 @@ use crate::shape::ShapeKind;
 use crate::step::StepOrder;
 use crate::transfer::{TransferKind, pic_flip::pic_share};
 use nodes::{
-    DV, F, Grid, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, gather, moment,
-    near, reaches_behind_wall, scatter, strain, walled,
+    DV, F, Grid, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, free, gather,
+    moment, near, reaches_behind_wall, scatter, strain, walled,
 };
 
 /// One step of length `dt` [s]; `update` gets each particle with its velocity gradient [1/s] and
@@ -19,7 +19,7 @@ pub fn step<const D: usize>(
     dt: f64,
     update: &mut Update<'_, D>,
 ) {
-    let o = s.0;
+    let (o, g) = (s.0, Vector::<D>::from_fn(|a, _| s.0.gravity[a]));
     let first = match o.order {
         StepOrder::Usf => 1.0,
         StepOrder::Usavg => 0.5,
@@ -31,18 +31,22 @@ pub fn step<const D: usize>(
     };
     if first > 0.0 {
         let mut grid = scatter(s, particles, affine(particles));
-        grid.iter_mut().for_each(|(i, n)| n.1[V] = walled(s, i, n.1[MV] / n.0));
+        for (i, n) in &mut grid {
+            n.2 = walled(s, i, n.1[MV] / n.0 + dt * (n.1[F] / n.0 + g)).1;
+            n.1[V] = free(n.2, n.1[MV] / n.0);
+        }
         filter_field(s, particles, &mut grid, V);
         let x: Vec<_> = particles.iter().map(|p| p.x).collect();
         strain(s, particles, &x, (&grid, V), first * dt, update);
     }
     let mut grid = scatter(s, particles, affine(particles));
     for (i, n) in &mut grid {
-        let (old, g) = (n.1[MV] / n.0, Vector::<D>::from_fn(|a, _| o.gravity[a]));
-        let a: Vector<D> = n.1[F] / n.0 + g;
-        let damping = a.zip_map(&old, |a, v| o.damping * a.abs() * v.signum());
-        n.1[V] = walled(s, i, old + dt * (a - damping));
-        n.1[DV] = n.1[V] - old;
+        let old = n.1[MV] / n.0;
+        let (new, held, sticks) = walled(s, i, old + dt * (n.1[F] / n.0 + g));
+        let still = |a: usize| o.transfer == TransferKind::PicFlip && sticks[a];
+        let change = Vector::<D>::from_fn(|a, _| if still(a) { 0.0 } else { new[a] - old[a] });
+        let damping = free(held, change.zip_map(&old, |dv, v| o.damping * dv.abs() * v.signum()));
+        (n.1[V], n.1[DV], n.2) = (new - damping, change - damping, held);
     }
     if o.transfer.is_filtered() {
         filter_grid(s, particles, &mut grid);
@@ -71,7 +75,7 @@ pub fn step<const D: usize>(
     }
     if o.order == StepOrder::Musl {
         let again = scatter(s, particles, affine(particles));
-        grid.iter_mut().for_each(|(i, n)| n.1[LAST] = walled(s, i, again[i].1[MV] / n.0));
+        grid.iter_mut().for_each(|(i, n)| n.1[LAST] = free(n.2, again[i].1[MV] / n.0));
         filter_field(s, particles, &mut grid, LAST);
     }
     match o.order {
@@ -89,8 +93,8 @@ fn filter_grid<const D: usize>(s: Setup<'_>, particles: &[Particle<D>], grid: &m
         n.1[LAST] = n.1[V] - if xpic { n.1[DV] } else { Vector::zeros() };
     }
     sum_terms(s, particles, grid, LAST);
-    for (i, n) in grid {
-        n.1[U] = walled(s, i, n.1[U] + n.1[V] - n.1[LAST]);
+    for n in grid.values_mut() {
+        n.1[U] = free(n.2, n.1[U] + n.1[V] - n.1[LAST]);
         n.1[V] = if xpic { n.1[V] } else { n.1[U] };
     }
 }
@@ -105,12 +109,12 @@ fn filter_field<const D: usize>(s: Setup<'_>, ps: &[Particle<D>], grid: &mut Gri
 
 /// The terms of the filter that begin with a field, summed into U.
 fn sum_terms<const D: usize>(s: Setup<'_>, ps: &[Particle<D>], grid: &mut Grid<D>, start: usize) {
-    grid.iter_mut().for_each(|(i, n)| n.1[U] = walled(s, i, n.1[start]));
+    grid.values_mut().for_each(|n| n.1[U] = free(n.2, n.1[start]));
     for _ in 1..s.0.filter_order {
         let u = gather(s, ps, grid, U);
         let again = scatter(s, ps, |k, _| u[k]);
         for (i, n) in grid.iter_mut() {
-            n.1[U] = walled(s, i, n.1[U] + n.1[start] - again[i].1[MV] / n.0);
+            n.1[U] = free(n.2, n.1[U] + n.1[start] - again[i].1[MV] / n.0);
         }
     }
 }

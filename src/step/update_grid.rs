@@ -1,4 +1,5 @@
-//! Stage 3, the grid: v_i = (mv)_i / m_i + dt (f_i / m_i + g), with local non-viscous damping.
+//! Stage 3, the grid: v_i = (mv)_i / m_i + dt (f_i / m_i + g); and stage 4a, local non-viscous
+//! damping.
 //!
 //! Every node with any mass takes part, however light: m_i and (mv)_i carry the same small weight,
 //! so that their quotient is as good as any, and a cut-off would leave holes in the velocity
@@ -6,9 +7,11 @@
 //! Quadratic shapes bear it, since their gradient vanishes with the weight; linear ones do not, and
 //! need FLIP with MUSL, whose second mapping takes the light nodes out of the velocity gradient.
 //!
-//! Damping takes α |F| from every component of the force F = f + m g, against the velocity:
-//! F ← F − α |F| sgn(v). P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods
-//! in Engineering Rock Mechanics (1987) 129–163.
+//! Damping takes α |F| from every component of the force F = m Δv / dt, against the velocity at the
+//! start: F ← F − α |F| sgn(v). F is what is left of all forces once walls and prescribed velocities
+//! have acted: what they hold is not damped, and reactions and friction are those of the whole
+//! forces. P. A. Cundall, in: E. T. Brown (ed.), Analytical and Computational Methods in
+//! Engineering Rock Mechanics (1987) 129–163.
 
 use super::parts::Method;
 use crate::background::nodes::pair_of_vectors;
@@ -28,12 +31,35 @@ pub fn update_grid<const D: usize>(
     dt: f64,
 ) {
     let g = pair_of_vectors::<D>(std::array::from_fn(|a| gravity[a]));
-    let damping = method.options.damping;
     let Nodes { velocity, increment, force } = nodes;
     let records =
         (Cut(&mut velocity[..], NODES), Cut(&mut increment[..], NODES), Cut(&force[..], NODES));
     team.for_each_piece(records, 1, |_, (velocity, increment, force)| {
-        method.isa.dispatch(Update { velocity, increment, force, g, damping, dt });
+        method.isa.dispatch(Update { velocity, increment, force, g, dt });
+    });
+}
+
+/// Damps the changes of velocity that nothing holds.
+pub fn damp_grid<const D: usize>(nodes: &mut Nodes, damping: f64, team: &Team) {
+    if damping == 0.0 {
+        return;
+    }
+    let Nodes { velocity, increment, force } = nodes;
+    let records =
+        (Cut(&mut velocity[..], NODES), Cut(&mut increment[..], NODES), Cut(&force[..], NODES));
+    team.for_each_piece(records, 1, |_, (velocity, increment, force)| {
+        for ((velocity, increment), force) in velocity.iter_mut().zip(increment).zip(force) {
+            let held = force.held() | increment.held();
+            for a in (0..D).filter(|a| !held.has(*a)) {
+                let change = increment.component(a);
+                let before = velocity.component(a) - change;
+                if before != 0.0 {
+                    let resistance = damping * change.abs() * before.signum(); // [GRD-2]
+                    *increment.component_mut(a) = change - resistance;
+                    *velocity.component_mut(a) -= resistance;
+                }
+            }
+        }
     });
 }
 
@@ -42,7 +68,6 @@ struct Update<'a> {
     increment: &'a mut [Record],
     force: &'a [Record],
     g: [f64; LANES],
-    damping: f64,
     dt: f64,
 }
 
@@ -60,13 +85,7 @@ impl Kernel for Update<'_> {
             let present = V::halves(present(m), present(n));
             let before = Record::load_pair::<V>(velocity) * inverse;
             let force = Record::load_pair::<V>(force);
-            let mut acceleration = force.mul_add(inverse, g * present);
-            if self.damping > 0.0 {
-                let sign = before / before.abs().max(V::splat(f64::MIN_POSITIVE));
-                let resistance = V::splat(self.damping) * acceleration.abs() * sign;
-                acceleration = acceleration - resistance; // [GRD-2]
-            }
-            let change = acceleration * dt;
+            let change = force.mul_add(inverse, g * present) * dt;
             Record::store_pair(increment, change);
             Record::store_pair(velocity, before + change); // [GRD-1]
             velocity[0].set_mass(m);

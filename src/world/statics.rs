@@ -1,6 +1,7 @@
 //! Statics by dynamics: how far from equilibrium, steps until it is reached, and initial stresses.
 
 use crate::background::{Background, block_nodes, nodes_of};
+use crate::boundary::{Reaching, law::constrain};
 use crate::error::{Error, Result, Status};
 use crate::material::Kinematics;
 use crate::step::parts::Parts;
@@ -239,14 +240,11 @@ impl<const D: usize> Parts<D> {
                     force[n] = free;
                 });
             }
-            for entry in self.conditions.walls.iter() {
-                entry.condition.reached(space, key, |nodes| {
-                    for force in &mut force[nodes] {
-                        let free = entry.condition.constrain(*force);
-                        walls += difference(force, &free);
-                        *force = free;
-                    }
-                });
+            for (n, force) in force.iter_mut().enumerate() {
+                let before = *force;
+                let reaching = Reaching::new(&self.conditions.walls, space, key, n);
+                constrain(reaching, force, &mut |_, _, _| {});
+                walls += difference(&before, force);
             }
             unbalanced += force.iter().map(size).sum::<f64>();
         }

@@ -1,6 +1,7 @@
 //! What the textbook's step does with nodes: weights, walls, sums to the grid and back, strain.
 
-use crate::boundary::Wall;
+use crate::background::Held;
+use crate::boundary::{Wall, WallKind, law::constrain};
 use crate::shape::{ShapeKind, WallTreatment, textbook::weight_between};
 use crate::step::options::Options;
 use crate::transfer::TransferKind;
@@ -29,9 +30,9 @@ pub struct Particle<const D: usize> {
 }
 
 /// A node: mass, momentum, force, velocity, its increment, the velocity that particles take, and
-/// that gradients are taken of.
+/// that gradients are taken of; and what walls hold.
 #[derive(Clone, Copy)]
-pub struct Node<const D: usize>(pub f64, pub [Vector<D>; 6]);
+pub struct Node<const D: usize>(pub f64, pub [Vector<D>; 6], pub Held);
 /// The fields of a node.
 pub const MV: usize = 0;
 #[allow(missing_docs)]
@@ -98,15 +99,34 @@ pub fn moment(shape: ShapeKind) -> f64 {
     if shape == ShapeKind::CubicBspline { 3.0 } else { 4.0 }
 }
 
-/// A velocity of a node as the walls leave it.
-pub fn walled<const D: usize>((o, walls): Setup<'_>, i: &[i64; D], v: Vector<D>) -> Vector<D> {
+/// The walls that reach a node, with their numbers.
+fn walls_at<'a, const D: usize>((o, walls): Setup<'a>, i: &[i64; D]) -> Vec<(usize, &'a Wall)> {
     let reach =
         if o.wall_treatment == WallTreatment::Modified { 0.0 } else { o.shape.wall_reach() };
     let acts = |w: &&Wall| {
         let x = o.origin[w.axis] + i[w.axis] as f64 * o.spacing;
         (x - w.position) * f64::from(w.side) <= (reach + 1e-9) * o.spacing
     };
-    walls.iter().filter(acts).fold(v, |v, wall| wall.constrain(v.into()).into())
+    walls.iter().filter(acts).enumerate().collect()
+}
+
+/// A velocity of a node as the walls leave it, what they hold of it, and whether a sticky wall does
+/// along itself.
+pub fn walled<const D: usize>(
+    s: Setup<'_>,
+    i: &[i64; D],
+    v: Vector<D>,
+) -> (Vector<D>, Held, [bool; D]) {
+    let (walls, mut v, mut sticks) = (walls_at(s, i), v.into(), [false; D]);
+    let held = constrain(walls.iter().copied(), &mut v, &mut |n, a, _| {
+        sticks[a] |= walls[n].1.kind == WallKind::Sticky && walls[n].1.axis != a;
+    });
+    (v.into(), held, sticks)
+}
+
+/// A velocity without what is held.
+pub fn free<const D: usize>(held: Held, v: Vector<D>) -> Vector<D> {
+    Vector::from_fn(|a, _| if held.has(a) { 0.0 } else { v[a] })
 }
 
 /// Masses, and what `give` gives to a node at the distance r, summed over the particles into
@@ -119,7 +139,7 @@ pub fn scatter<const D: usize>(
     let mut grid = Grid::new();
     for (k, p) in particles.iter().enumerate() {
         for (i, w, dw, r) in near(s, p) {
-            let n = grid.entry(i).or_insert(Node(0.0, [Vector::zeros(); 6]));
+            let n = grid.entry(i).or_insert(Node(0.0, [Vector::zeros(); 6], Held::default()));
             n.0 += w * p.mass;
             n.1[MV] += w * p.mass * v(k, r);
             n.1[F] += w * p.mass * p.body_force - p.volume * p.stress * dw;
