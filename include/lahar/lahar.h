@@ -627,13 +627,13 @@ lahar_status lahar_material_value(const lahar_material *material,
 // the particle (F = R U), at most to the spacing.
 #define LAHAR_SHAPE_CONTIGUOUS_GIMP 4
 
-// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it
-// (default).
+// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it.
+// With B-splines a layer of up to a cell moves with the wall: fluids drain into it.
 #define LAHAR_WALLS_PLAIN 0
 
 // Next to walls shape functions are modified: linear fields are reproduced up to the wall,
-// where the node on it alone counts. Walls must stand on node planes, at most one on each
-// side of an axis, and particles between them.
+// which acts where it stands, on a node plane or not (default). Of several walls on a side
+// of an axis the innermost counts; facing ones must be half a cell apart.
 #define LAHAR_WALLS_MODIFIED 1
 
 // Transfer between particles and grid: a blend of PIC and FLIP, see `pic_rate`.
@@ -1269,7 +1269,7 @@ lahar_status lahar_wall_init(lahar_wall *wall, int64_t size);
 //
 // `wall`: copied. `id`: gets the id of the wall; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side),
+// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: less than half a cell from a wall that faces it),
 // LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_wall_add(lahar_world *world, const lahar_wall *wall, int64_t *id);

@@ -50,10 +50,10 @@ pub fn constrain<'w, const D: usize>(
         let taken = wall.friction * (-wall.along(&free)).max(0.0);
         let speed = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         if taken > 0.0 && speed <= taken {
-            (0..D).for_each(|a| hold!(n, a)); // [BND-2], sticks
+            (0..D).for_each(|a| hold!(n, a)); // [BND-2]
         } else if taken > 0.0 {
             for a in (0..D).filter(|a| !held.has(*a)) {
-                let left = v[a] * (1.0 - taken / speed); // [BND-2], slides
+                let left = v[a] * (1.0 - taken / speed); // [BND-2]
                 took(n, a, left - v[a]);
                 v[a] = left;
             }

@@ -76,10 +76,13 @@ impl PrescribedVelocity {
     ) -> Range<usize> {
         let lowest = f64::from(key.at[d]) * EDGE as f64;
         let units = |x: f64| (x - space.origin[d]) * space.inverse;
-        let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;
-        let first = (units(self.region.min[d]) - ROUND_OFF).ceil() - lowest;
-        let last = (units(self.region.max[d]) + ROUND_OFF).floor() - lowest;
-        clamp(first)..clamp(last + 1.0)
+        let (min, max) = (units(self.region.min[d]), units(self.region.max[d]));
+        let inside = |layer: &usize| {
+            let at = space.fits[d].position(lowest + *layer as f64);
+            min - ROUND_OFF <= at && at <= max + ROUND_OFF
+        };
+        let first = (0..EDGE).find(inside).unwrap_or(EDGE);
+        first..(first..EDGE).rfind(inside).map_or(first, |last| last + 1)
     }
 }
 

@@ -85,7 +85,15 @@ impl Wall {
 
     /// Layers of nodes of block `key`, along the wall's axis, that the wall reaches.
     pub fn reached<const D: usize>(&self, space: &Space<D>, key: &Key<D>) -> Range<usize> {
-        let at = (self.position - space.origin[self.axis]) / space.spacing;
+        let fit = &space.fits[self.axis];
+        let side = usize::from(self.side < 0);
+        let mut at = (self.position - space.origin[self.axis]) / space.spacing;
+        if fit.walls[side].is_finite() {
+            if (at - fit.walls[side]).abs() > ROUND_OFF {
+                return 0..0; // another one stands in front of it
+            }
+            at = fit.nodes[side];
+        }
         let reach = space.wall_reach + ROUND_OFF; // [BND-3]
         let lowest = f64::from(key.at[self.axis]) * EDGE as f64;
         let clamp = |layer: f64| layer.clamp(0.0, EDGE as f64) as usize;

@@ -64,7 +64,7 @@ pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> la
 ///
 /// `wall`: copied. `id`: gets the id of the wall; may be NULL.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-/// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: not on a node plane, or a second wall on a side),
+/// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: less than half a cell from a wall that faces it),
 /// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]

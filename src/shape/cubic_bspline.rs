@@ -30,11 +30,17 @@ impl ShapeFunction<4> for CubicBspline {
             let (r, rr) = [(b, bb), (a, aa)][n];
             R::splat(1.5) * rr - (r + r)
         });
-        Axis {
-            first,
-            fraction: f,
-            w: [sixth * aa * a, near[0], near[1], sixth * bb * b], // [SHP-4]
-            dw: [-(half * aa), inner[0], -inner[1], half * bb],
-        }
+        let w = [sixth * aa * a, near[0], near[1], sixth * bb * b]; // [SHP-4]
+        let dw = [-(half * aa), inner[0], -inner[1], half * bb];
+        Axis::new(first, f, w, dw)
+    }
+
+    #[inline(always)]
+    fn ramp<R: Real>(t: R, _half: R) -> (R, R) {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let (a, b, c) = ((t + one).max(zero), t.max(zero), (t - one).max(zero));
+        let (aa, bb, cc) = (a * a, b * b, c * c);
+        let sum = aa * a - (bb + bb) * b + cc * c;
+        (R::splat(1.0 / 6.0) * sum, R::splat(0.5) * (aa - bb - bb + cc))
     }
 }

@@ -7,6 +7,7 @@
 //! stretch (contiguous-particle GIMP) is not decided here: the weights depend on the size alone. A
 //! domain counts as one cell wide at most, since it would reach a fourth node otherwise.
 
+use super::modified::hat_ramp;
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
 
@@ -32,12 +33,14 @@ impl ShapeFunction<3> for Gimp {
         let (middle, _) = weight((f - R::splat(1.0)).abs(), l, inverse);
         let (high, high_slope) = weight(R::splat(2.0) - f, l, inverse);
         let high_slope = -high_slope;
-        Axis {
-            first,
-            fraction: f,
-            w: [low, middle, high],
-            dw: [low_slope, -(low_slope + high_slope), high_slope],
-        }
+        let w = [low, middle, high];
+        let dw = [low_slope, -(low_slope + high_slope), high_slope];
+        Axis::new(first, f, w, dw)
+    }
+
+    #[inline(always)]
+    fn ramp<R: Real>(t: R, half: R) -> (R, R) {
+        hat_ramp(t, half.min(R::splat(0.5)))
     }
 }
 

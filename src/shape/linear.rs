@@ -1,5 +1,6 @@
 //! Linear shape function: w(r) = 1 − |r| on |r| < 1, r in units of the spacing.
 
+use super::modified::hat_ramp;
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
 
@@ -17,6 +18,11 @@ impl ShapeFunction<2> for Linear {
         // On a node plane the far node would have no mass and hence no velocity, but its slope
         // would still count.
         let f = (at.xi - first).max(least).min(one - least);
-        Axis { first, fraction: f, w: [one - f, f], dw: [-one, one] } // [SHP-1]
+        Axis::new(first, f, [one - f, f], [-one, one]) // [SHP-1]
+    }
+
+    #[inline(always)]
+    fn ramp<R: Real>(t: R, _half: R) -> (R, R) {
+        hat_ramp(t, R::splat(0.0))
     }
 }

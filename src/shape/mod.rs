@@ -42,12 +42,12 @@ choices! {
 choices! {
     /// What shape functions do next to walls, see [`modified`].
     pub enum WallTreatment: "wall_treatment" {
-        /// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it
-        /// (default).
+        /// Next to walls shape functions are as everywhere; all nodes in reach of a wall feel it.
+        /// With B-splines a layer of up to a cell moves with the wall: fluids drain into it.
         Plain = 0, "plain", LAHAR_WALLS_PLAIN;
         /// Next to walls shape functions are modified: linear fields are reproduced up to the wall,
-        /// where the node on it alone counts. Walls must stand on node planes, at most one on each
-        /// side of an axis, and particles between them.
+        /// which acts where it stands, on a node plane or not (default). Of several walls on a side
+        /// of an axis the innermost counts; facing ones must be half a cell apart.
         Modified = 1, "modified", LAHAR_WALLS_MODIFIED, "modified shape functions";
     }
 }

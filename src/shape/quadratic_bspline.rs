@@ -4,6 +4,7 @@
 //! M. Steffen, R. M. Kirby, M. Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922–948,
 //! doi:10.1002/nme.2360.
 
+use super::modified::hat_ramp;
 use super::stencil::{At, Axis, ShapeFunction};
 use crate::simd::Real;
 
@@ -20,11 +21,13 @@ impl ShapeFunction<3> for QuadraticBspline {
         let first = (at.xi - half).floor();
         let f = at.xi - first; // in [½, 3/2)
         let (a, b, c) = (R::splat(1.5) - f, f - R::splat(1.0), f - half);
-        Axis {
-            first,
-            fraction: f,
-            w: [half * a * a, R::splat(0.75) - b * b, half * c * c], // [SHP-3]
-            dw: [-a, -(b + b), c],
-        }
+        let w = [half * a * a, R::splat(0.75) - b * b, half * c * c]; // [SHP-3]
+        let dw = [-a, -(b + b), c];
+        Axis::new(first, f, w, dw)
+    }
+
+    #[inline(always)]
+    fn ramp<R: Real>(t: R, _half: R) -> (R, R) {
+        hat_ramp(t, R::splat(0.5))
     }
 }

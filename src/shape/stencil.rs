@@ -1,8 +1,8 @@
 //! The stencil of particles: nodes, weights and gradients as a tensor product of one-dimensional
 //! functions.
 
-use crate::background::Space;
-use crate::simd::Real;
+use crate::background::{Space, space::Fit};
+use crate::simd::{Real, each};
 
 /// Where a particle, or eight, stands along one axis, in units of the spacing.
 #[derive(Clone, Copy, Debug)]
@@ -11,30 +11,29 @@ pub struct At<R> {
     pub xi: R,
     /// Half the edge of the particle's domain; only sized shape functions look at it.
     pub half: R,
-    /// The nodes of the walls below and above; only modified shape functions look at them.
-    pub walls: [R; 2],
+    /// The walls below and above; only modified shape functions look at them.
+    pub fit: Fit,
 }
 
 impl At<f64> {
     /// A point without extent, far from walls.
     pub const fn point(xi: f64) -> Self {
-        Self { xi, half: 0.0, walls: [f64::NEG_INFINITY, f64::INFINITY] }
+        Self { xi, half: 0.0, fit: Fit::FREE }
     }
 }
 
 impl<R: Real> At<R> {
     /// Along axis d, at ξ [h], with edges `size` [m].
     #[inline(always)]
-    fn along<const D: usize>(space: &Space<D>, d: usize, xi: R, size: R) -> Self {
-        let [low, high] = space.walls[d];
+    pub fn along<const D: usize>(space: &Space<D>, d: usize, xi: R, size: R) -> Self {
         let half = size * R::splat(0.5 * space.inverse);
-        Self { xi, half, walls: [R::splat(low), R::splat(high)] }
+        Self { xi, half, fit: space.fits[d] }
     }
 }
 
 /// Where any shape function is wanted for a point; `size` are the edges of its domain [m].
 pub fn at_point<const D: usize>(space: &Space<D>, x: [f64; D], size: [f64; D]) -> [At<f64>; D] {
-    let xi = space.between_walls(x);
+    let xi = space.to_units(x);
     std::array::from_fn(|d| At::along(space, d, xi[d], size[d]))
 }
 
@@ -50,6 +49,16 @@ pub struct Axis<R, const N: usize> {
     pub w: [R; N],
     /// Derivatives of the weights with respect to ξ = x / h.
     pub dw: [R; N],
+    /// Distances of the nodes from the position, in units of the spacing.
+    pub r: [R; N],
+}
+
+impl<R: Real, const N: usize> Axis<R, N> {
+    /// Weights and slopes of nodes at equal distances.
+    #[inline(always)]
+    pub fn new(first: R, fraction: R, w: [R; N], dw: [R; N]) -> Self {
+        Self { first, fraction, w, dw, r: each!(n in N => R::splat(n as f64) - fraction) }
+    }
 }
 
 /// A shape function of one axis with `N` nodes.
@@ -63,6 +72,9 @@ pub trait ShapeFunction<const N: usize> {
     const SIZED: bool = false;
     /// Whether the weights are modified next to walls.
     const MODIFIED: bool = false;
+    /// The smooth ramp R(t) that a field has instead of a kink at a node, and its slope; `half` as
+    /// in [`At`]. See [`modified`](super::modified).
+    fn ramp<R: Real>(t: R, half: R) -> (R, R);
     /// Weights and slopes.
     fn axis<R: Real>(at: At<R>) -> Axis<R, N>;
 }
@@ -88,7 +100,7 @@ impl<R: Real, const N: usize, const D: usize> Stencil<R, N, D> {
     /// The stencil of particles with edges `size` [m].
     #[inline(always)]
     pub fn of_particles<S: ShapeFunction<N>>(space: &Space<D>, x: [R; D], size: [R; D]) -> Self {
-        let xi = if S::MODIFIED { space.between_walls(x) } else { space.to_units(x) };
+        let xi = space.to_units(x);
         let mut axes = [S::axis(At::along(space, 0, xi[0], size[0])); D];
         for d in 1..D {
             axes[d] = S::axis(At::along(space, d, xi[d], size[d]));

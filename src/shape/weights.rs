@@ -46,8 +46,7 @@ impl<const N: usize, const D: usize> Weights<N, D> {
                 }
                 axis.w[n].store(&mut self.w[d][n]);
                 axis.dw[n].store(&mut self.high[d][n]);
-                let r = V::splat(n as f64) - axis.fraction;
-                let low = if moments { r * axis.w[n] } else { axis.dw[n] };
+                let low = if moments { axis.r[n] * axis.w[n] } else { axis.dw[n] };
                 low.store(&mut self.low[d][n]);
             }
         }

@@ -91,9 +91,9 @@ pub fn store_rates(work: &mut ChunkWork<'_, '_>) {
 
 /// Index of the patch of a point among those that a block reaches.
 fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize {
-    let xi = space.between_walls(x);
+    let xi = space.to_units(x);
     (0..D).fold(0, |patch, d| {
-        let cell = xi[d].floor() - f64::from(key.at[d]) * EDGE as f64;
+        let cell = space.fits[d].start(xi[d], 0.0).floor() - f64::from(key.at[d]) * EDGE as f64;
         patch * REACH + cell.clamp(0.0, EDGE as f64) as usize
     })
 }

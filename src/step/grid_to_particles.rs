@@ -360,9 +360,9 @@ fn store_velocity<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize
         let mut modified = None;
         if S::MODIFIED {
             let space = &job.background.space;
-            let (xi, walls) = (space.between_walls(x), &space.walls);
+            let (xi, size) = (space.to_units(x), V::splat(0.0)); // splines have none
             modified = Some(each!(d in D => {
-                is_modified::<V, S, N>(xi[d], [V::splat(walls[d][0]), V::splat(walls[d][1])])
+                is_modified::<V, S, N>(&At::along(space, d, xi[d], size))
             }));
         }
         let c = apic::affine(received, S::MOMENT, job.background.space.spacing, modified);
@@ -393,13 +393,17 @@ fn outside<V: Vector, S: ShapeFunction<N>, const N: usize, const D: usize>(
     count: usize,
 ) -> u8 {
     let space = &job.background.space;
-    let xi = if S::MODIFIED { space.between_walls(x) } else { space.to_units(x) };
+    let starts = if S::MODIFIED {
+        space.starts(x)
+    } else {
+        let xi = space.to_units(x);
+        each!(d in D => xi[d] - V::splat(space.first_offset))
+    };
     let mut inside = u8::MAX;
     for d in 0..D {
-        let start = xi[d] - V::splat(space.first_offset);
         let lowest = f64::from(key.at[d]) * EDGE as f64;
         let (low, high) = (V::splat(lowest), V::splat(lowest + EDGE as f64));
-        inside &= !start.less_than(low) & start.less_than(high);
+        inside &= !starts[d].less_than(low) & starts[d].less_than(high);
     }
     !inside & first_lanes(count)
 }

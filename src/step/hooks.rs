@@ -42,7 +42,7 @@ impl<const D: usize> Nodes for Background<D> {
         let index = self.blocks.node_index(node).unwrap_or([0; D]);
         let mut x = [0.0; 3];
         for d in 0..D {
-            x[d] = self.space.node_position(d, index[d]);
+            x[d] = self.space.node_position(d, index[d] as f64);
         }
         x
     }

@@ -39,29 +39,28 @@ pub struct Kernels<const D: usize> {
 }
 
 impl<const D: usize> Kernels<D> {
-    /// The kernels of checked options. Linear shape functions have nothing to modify next to a wall
-    /// on a node plane.
-    pub fn new(options: &Options) -> Self {
+    /// The kernels of checked options, in a world with or without walls.
+    pub fn new(options: &Options, walls: bool) -> Self {
+        let modified = walls && options.wall_treatment == WallTreatment::Modified;
+        let mls = options.transfer == TransferKind::Mls;
         match options.shape {
-            ShapeKind::Linear => Self::of::<Linear, 2>(),
-            ShapeKind::QuadraticBspline => Self::of_spline::<QuadraticBspline, 3>(options),
-            ShapeKind::CubicBspline => Self::of_spline::<CubicBspline, 4>(options),
-            ShapeKind::UniformGimp | ShapeKind::ContiguousGimp => Self::walled::<Gimp, 3>(options),
+            ShapeKind::Linear => Self::walled::<Linear, 2>(modified),
+            ShapeKind::QuadraticBspline => Self::of_spline::<QuadraticBspline, 3>(mls, modified),
+            ShapeKind::CubicBspline => Self::of_spline::<CubicBspline, 4>(mls, modified),
+            ShapeKind::UniformGimp | ShapeKind::ContiguousGimp => Self::walled::<Gimp, 3>(modified),
         }
     }
 
-    fn of_spline<S: ShapeFunction<N>, const N: usize>(options: &Options) -> Self {
-        if options.transfer == TransferKind::Mls {
-            return Self::of::<Mls<S>, N>();
+    fn of_spline<S: ShapeFunction<N>, const N: usize>(mls: bool, modified: bool) -> Self {
+        match (mls, modified) {
+            (true, false) => Self::of::<Mls<S>, N>(),
+            (true, true) => Self::of::<Mls<Modified<S>>, N>(),
+            _ => Self::walled::<S, N>(modified),
         }
-        Self::walled::<S, N>(options)
     }
 
-    fn walled<S: ShapeFunction<N>, const N: usize>(options: &Options) -> Self {
-        match options.wall_treatment {
-            WallTreatment::Plain => Self::of::<S, N>(),
-            WallTreatment::Modified => Self::of::<Modified<S>, N>(),
-        }
+    fn walled<S: ShapeFunction<N>, const N: usize>(modified: bool) -> Self {
+        if modified { Self::of::<Modified<S>, N>() } else { Self::of::<S, N>() }
     }
 
     fn of<S: ShapeFunction<N>, const N: usize>() -> Self {
@@ -71,7 +70,7 @@ impl<const D: usize> Kernels<D> {
             nodes_at: for_stencil_nodes::<S, N, D>,
             moment: |at| {
                 let axis = S::axis::<f64>(at);
-                (0..N).map(|n| axis.w[n] * (n as f64 - axis.fraction).powi(2)).sum()
+                (0..N).map(|n| axis.w[n] * axis.r[n].powi(2)).sum()
             },
         }
     }

@@ -156,11 +156,11 @@ struct Near<'a, const D: usize> {
 /// finite.
 #[inline(always)]
 fn block_and_cell<const D: usize>(space: &Space<D>, x: [f64; D]) -> Option<([i32; D], u32)> {
-    let xi = space.between_walls(x);
+    let starts = space.starts(x);
     let mut at = [0; D];
     let mut cell = 0;
     for d in 0..D {
-        let first = Real::floor(xi[d] - space.first_offset);
+        let first = Real::floor(starts[d]);
         if !(first.abs() < FARTHEST) {
             return None;
         }
@@ -267,6 +267,9 @@ fn sure_inside<const D: usize>(
         let scale = space.origin[d].abs() + (lowest.abs() + EDGE as f64) * space.spacing;
         let margin = 64.0 * f64::EPSILON * scale;
         (low[d], high[d]) = (edge(0.0) + margin, edge(EDGE as f64) - margin);
+        // next to a wall, stencils begin elsewhere
+        let [wall, far] = space.fits[d].nodes.map(|node| space.node_position(d, node));
+        (low[d], high[d]) = (low[d].max(wall + space.spacing), high[d].min(far - space.spacing));
         if let Some((min, max)) = limits {
             (low[d], high[d]) = (low[d].max(min[d]), high[d].min(max[d]));
         }

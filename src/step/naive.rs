@@ -8,7 +8,7 @@ use crate::step::StepOrder;
 use crate::transfer::{TransferKind, pic_flip::pic_share};
 use nodes::{
     DV, F, Grid, LAST, MV, Matrix, Near, Particle, Setup, U, Update, V, Vector, free, gather,
-    moment, near, reaches_behind_wall, scatter, strain, walled,
+    is_modified, moment, near, scatter, strain, walled,
 };
 
 /// One step of length `dt` [s]; `update` gets each particle with its velocity gradient [1/s] and
@@ -56,7 +56,7 @@ pub fn step<const D: usize>(
     let x: Vec<_> = particles.iter().zip(&pic).map(|(p, v)| p.x + dt * v).collect();
     for (k, p) in particles.iter_mut().enumerate() {
         let whole = near(s, p);
-        let modified = |d: usize| reaches_behind_wall(s, p, d);
+        let modified = |d: usize| is_modified(s, p, d);
         let splines = matches!(o.shape, ShapeKind::QuadraticBspline | ShapeKind::CubicBspline);
         let apic = |d: usize| splines && o.transfer != TransferKind::Tpic && !modified(d);
         let column = |(i, w, dw, r): &Near<D>| {

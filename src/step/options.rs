@@ -71,7 +71,7 @@ impl Default for Options {
             grid_policy: GridPolicy::Dynamic,
             box_min: [0.0; 3],
             box_max: [0.0; 3],
-            wall_treatment: WallTreatment::Plain,
+            wall_treatment: WallTreatment::Modified,
             axisymmetric: false,
             filter_order: FILTER_ORDER,
             body_force: false,
@@ -175,11 +175,6 @@ impl Options {
         if self.grid_policy == GridPolicy::Static { self.check_box() } else { Ok(()) }
     }
 
-    /// Whether shape functions are modified next to walls; linear ones have nothing to modify.
-    pub fn modifies_shapes(&self) -> bool {
-        self.wall_treatment == WallTreatment::Modified && self.shape != ShapeKind::Linear
-    }
-
     /// Where the grid stands in space, without walls.
     pub fn space<const D: usize>(&self) -> Space<D> {
         let reach = match self.wall_treatment {
@@ -222,13 +217,6 @@ impl Options {
                  quadratic or cubic B-spline, or transfer TPIC with this shape",
                 self.shape.name()
             ));
-        }
-        if self.transfer == TransferKind::Mls && self.wall_treatment == WallTreatment::Modified {
-            return unsupported(
-                "transfer MLS does not go with shape functions modified at walls, where Σ w r² vanishes: use APIC with \
-                 wall_treatment modified, or MLS with wall_treatment plain"
-                    .into(),
-            );
         }
         if self.axisymmetric && self.dimension != 2 {
             return unsupported(format!(

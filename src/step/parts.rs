@@ -108,7 +108,7 @@ impl<const D: usize> Parts<D> {
             background.set_owners(&blocks_of_box(&options, &space)?, false)?;
             background.blocks.no_change();
         }
-        let kernels = Kernels::new(&options);
+        let kernels = Kernels::new(&options, false);
         Ok(Self {
             background,
             bodies: Vec::new(),
@@ -161,13 +161,12 @@ impl<const D: usize> Parts<D> {
 
     /// To be called when walls came or went.
     pub fn walls_changed(&mut self) {
-        let options = &self.method.options;
-        if options.modifies_shapes() {
+        if self.method.options.wall_treatment == WallTreatment::Modified {
             let walls = self.conditions.walls.iter().map(|entry| &entry.condition);
             let walls = walls.map(|wall| (wall.axis, wall.side, wall.position));
             self.background.space = self.background.space.with_walls(walls);
-        }
-        if options.wall_treatment == WallTreatment::Modified {
+            let any = !self.conditions.walls.is_empty();
+            self.method.kernels = Kernels::new(&self.method.options, any);
             self.freshness.shapes_changed();
         }
     }
@@ -180,11 +179,12 @@ pub fn particle_count(bodies: &[Body]) -> usize {
 
 /// Blocks that particles in the box of a static grid may stand in.
 fn blocks_of_box<const D: usize>(options: &Options, space: &Space<D>) -> Result<Vec<Key<D>>> {
-    let block = |corner: [f64; 3]| -> [i64; D] {
+    let margin = f64::from(options.wall_treatment == WallTreatment::Modified); // of walls to come
+    let block = |corner: [f64; 3], margin: f64| -> [i64; D] {
         let xi = space.to_units(std::array::from_fn(|d| corner[d]));
-        xi.map(|x| split_node((x - space.first_offset).floor() as i64).0)
+        xi.map(|x| split_node((x - space.first_offset + margin).floor() as i64).0)
     };
-    let (low, high) = (block(options.box_min), block(options.box_max));
+    let (low, high) = (block(options.box_min, -margin), block(options.box_max, margin));
     let count: [i64; D] = std::array::from_fn(|d| high[d] - low[d] + 1);
     let all: i64 = count.iter().product();
     let mut blocks = Vec::new();

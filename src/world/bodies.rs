@@ -212,7 +212,7 @@ impl<const D: usize> Parts<D> {
             };
             let behind = |d: usize| {
                 let xi = (x[d] - space.origin[d]) * space.inverse;
-                !(space.walls[d][0] - 1e-6 <= xi && xi <= space.walls[d][1] + 1e-6)
+                !(space.fits[d].walls[0] - 1e-6 <= xi && xi <= space.fits[d].walls[1] + 1e-6)
             };
             if (0..D).any(behind) {
                 let text = format!(

@@ -134,31 +134,29 @@ impl<const D: usize> Parts<D> {
         load.surface::<D>(self.body(load.body)?, axisymmetric)
     }
 
-    /// Refuses a wall that the shape functions can not be modified for.
+    /// Refuses a wall that leaves no room between itself and another one.
     fn check_wall(&self, wall: &Wall) -> Result<()> {
         let options = &self.method.options;
         if options.wall_treatment != WallTreatment::Modified {
             return Ok(());
         }
-        let unsupported = |text: String| Err(Error::new(Status::Unsupported, text));
-        let (h, origin) = (options.spacing, options.origin[wall.axis]);
-        let node = ((wall.position - origin) / h).round();
-        if ((wall.position - origin) / h - node).abs() > 1e-6 {
-            return unsupported(format!(
-                "with wall_treatment modified a wall stands on a node plane; {} is between two, the nearest is at {}",
-                wall.position,
-                origin + node * h
-            ));
+        let least = 0.5 * options.spacing;
+        let facing =
+            |w: &&Entry<Wall>| w.condition.axis == wall.axis && w.condition.side != wall.side;
+        for other in self.conditions.walls.iter().filter(facing) {
+            let gap = f64::from(wall.side) * (other.condition.position - wall.position);
+            if !(gap >= least) {
+                return Err(Error::new(
+                    Status::Unsupported,
+                    format!(
+                        "this wall leaves {gap} m between itself and wall {} at {}, less than half a cell ({least} m): \
+                     move or remove one of them, or use wall_treatment plain",
+                        other.id, other.condition.position
+                    ),
+                ));
+            }
         }
-        let same =
-            |w: &&Entry<Wall>| (w.condition.axis, w.condition.side) == (wall.axis, wall.side);
-        match self.conditions.walls.iter().find(same) {
-            None => Ok(()),
-            Some(other) => unsupported(format!(
-                "with wall_treatment modified an axis has one wall on each side; wall {} stands at {} already: remove it first",
-                other.id, other.condition.position
-            )),
-        }
+        Ok(())
     }
 }
 

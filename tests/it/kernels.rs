@@ -73,16 +73,20 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs())) / largest
 }
 
-/// Friction and slip below, separating and sticky above; on node planes where they modify the shape
-/// functions.
+/// Friction and slip below, separating and sticky above, off the node planes; where they modify the
+/// shape functions and the order is USL, on them.
 fn walls(options: &Options) -> Vec<Wall> {
     let kinds = [WallKind::Friction, WallKind::Slip, WallKind::Separating, WallKind::Sticky];
     let (modified, d) = (options.wall_treatment == WallTreatment::Modified, options.dimension);
+    let on_nodes = modified && options.order == StepOrder::Usl;
     let wall = |n: usize| {
         let (axis, side) = (n % d, if n < 2 { 1 } else { -1 });
         let node = if side > 0 { -3.0 } else { 4.0 };
-        let plane = options.origin[axis] + node * H;
-        let position = if modified { plane } else { [-0.71, 1.13][usize::from(side < 0)] };
+        let position = match (modified, on_nodes) {
+            (true, true) => options.origin[axis] + node * H,
+            (true, false) => [-0.79, 1.21][usize::from(side < 0)],
+            _ => [-0.71, 1.13][usize::from(side < 0)],
+        };
         Wall { axis, side, position, kind: kinds[n], friction: 0.3 }
     };
     (0..4).map(wall).filter(|w| !options.axisymmetric || w.axis == 1).collect()

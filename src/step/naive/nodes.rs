@@ -2,7 +2,7 @@
 
 use crate::background::Held;
 use crate::boundary::{Wall, WallKind, law::constrain};
-use crate::shape::{ShapeKind, WallTreatment, textbook::weight_between};
+use crate::shape::{ShapeKind, WallTreatment, textbook::Between};
 use crate::step::options::Options;
 use crate::transfer::TransferKind;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -55,43 +55,49 @@ pub type Update<'a, const D: usize> = dyn FnMut(&mut Particle<D>, &Matrix<D>, f6
 /// A node near a particle: index, w, ∇w, r = x_i − x_p.
 pub type Near<const D: usize> = ([i64; D], f64, Vector<D>, Vector<D>);
 /// The nodes near a particle.
-pub fn near<const D: usize>((o, walls): Setup<'_>, p: &Particle<D>) -> Vec<Near<D>> {
-    let (h, between) = (o.spacing, walls_around::<D>((o, walls)));
+pub fn near<const D: usize>(s: Setup<'_>, p: &Particle<D>) -> Vec<Near<D>> {
+    let (o, h, between) = (s.0, s.0.spacing, between_walls::<D>(s));
     let xi: [f64; D] = from_fn(|d| (p.x[d] - o.origin[d]) / h);
     let node = |n: usize| {
         let i: [i64; D] =
-            from_fn(|d| xi[d].floor() as i64 - 1 + (n / 4usize.pow(d as u32) % 4) as i64);
-        let axis: [(f64, f64); D] = from_fn(|d| {
-            weight_between(o.shape, i[d], |i| xi[d] - i as f64, 0.5 * p.size[d] / h, between[d])
-        });
+            from_fn(|d| between[d].cell(xi[d]) - 1 + (n / 4usize.pow(d as u32) % 4) as i64);
+        let axis: [(f64, f64); D] =
+            from_fn(|d| between[d].weight(o.shape, i[d], xi[d], 0.5 * p.size[d] / h));
         let slope = |d: usize, e: usize| if d == e { axis[e].1 / h } else { axis[e].0 };
         let (w, r) = (
             (0..D).map(|d| axis[d].0).product::<f64>(),
-            Vector::from_fn(|d, _| (i[d] as f64 - xi[d]) * h),
+            Vector::from_fn(|d, _| between[d].distance(i[d], xi[d]) * h),
         );
-        let mls = r * w * moment(o.shape) / (h * h);
-        let dw = Vector::from_fn(|d, _| (0..D).map(|e| slope(d, e)).product());
-        (w > 0.0).then_some((i, w, if o.transfer == TransferKind::Mls { mls } else { dw }, r))
+        let dw = Vector::from_fn(|d, _| {
+            let mls = o.transfer == TransferKind::Mls && !is_modified(s, p, d);
+            let by_axes = (0..D).map(|e| slope(d, e)).product();
+            if mls { r[d] * w * moment(o.shape) / (h * h) } else { by_axes }
+        });
+        let behind = (0..D).any(|d| i[d] < between[d].nodes[0] || i[d] > between[d].nodes[1]);
+        (w > 0.0 && !behind).then_some((i, w, dw, r))
     };
     (0..4usize.pow(D as u32)).filter_map(node).collect()
 }
 
-/// The nodes of the walls that modify the shape functions along each axis.
-fn walls_around<const D: usize>((o, walls): Setup<'_>) -> [[i64; 2]; D] {
-    let mut between = [[i64::MIN, i64::MAX]; D];
-    let modified = o.wall_treatment == WallTreatment::Modified && o.shape != ShapeKind::Linear;
-    for wall in walls.iter().filter(|_| modified) {
-        let node = ((wall.position - o.origin[wall.axis]) / o.spacing).round();
-        between[wall.axis][usize::from(wall.side < 0)] = node as i64;
+/// The walls that modify the shape functions along each axis; linear ones too.
+fn between_walls<const D: usize>((o, walls): Setup<'_>) -> [Between; D] {
+    let mut between = [[f64::NEG_INFINITY, f64::INFINITY]; D];
+    for wall in walls.iter().filter(|_| o.wall_treatment == WallTreatment::Modified) {
+        let [low, high] = &mut between[wall.axis];
+        let xi = (wall.position - o.origin[wall.axis]) / o.spacing;
+        if wall.side > 0 { *low = low.max(xi) } else { *high = high.min(xi) }
     }
-    between
+    between.map(Between::new)
 }
 
-/// Whether the function of a node behind a wall reaches a particle along axis d.
-pub fn reaches_behind_wall<const D: usize>(s: Setup<'_>, p: &Particle<D>, d: usize) -> bool {
+/// Whether walls make weights or distances of nodes other than elsewhere along axis d: a function
+/// reaches behind a wall, or the node of a wall has moved and the function reaches it.
+pub fn is_modified<const D: usize>(s: Setup<'_>, p: &Particle<D>, d: usize) -> bool {
     let xi = (p.x[d] - s.0.origin[d]) / s.0.spacing;
-    let [low, high] = walls_around::<D>(s)[d].map(|node| node as f64);
-    (xi - low).min(high - xi) < 0.5 * s.0.shape.nodes() as f64 - 1.0
+    let between = between_walls::<D>(s)[d];
+    let [low, high] = between.nodes.map(|node| node as f64);
+    let radius = 0.5 * s.0.shape.nodes() as f64;
+    (xi - low).min(high - xi) < radius - f64::from(!between.moved())
 }
 
 /// 1 / Σ w r², in units of 1 / h².
@@ -100,12 +106,19 @@ pub fn moment(shape: ShapeKind) -> f64 {
 }
 
 /// The walls that reach a node, with their numbers.
-fn walls_at<'a, const D: usize>((o, walls): Setup<'a>, i: &[i64; D]) -> Vec<(usize, &'a Wall)> {
-    let reach =
-        if o.wall_treatment == WallTreatment::Modified { 0.0 } else { o.shape.wall_reach() };
+fn walls_at<'a, const D: usize>(s: Setup<'a>, i: &[i64; D]) -> Vec<(usize, &'a Wall)> {
+    let (o, walls) = s;
     let acts = |w: &&Wall| {
-        let x = o.origin[w.axis] + i[w.axis] as f64 * o.spacing;
-        (x - w.position) * f64::from(w.side) <= (reach + 1e-9) * o.spacing
+        let (d, side, end) = (w.axis, f64::from(w.side), usize::from(w.side < 0));
+        let at = (w.position - o.origin[d]) / o.spacing;
+        let between = between_walls::<D>(s)[d];
+        match o.wall_treatment {
+            WallTreatment::Plain => (i[d] as f64 - at) * side <= o.shape.wall_reach() + 1e-9,
+            WallTreatment::Modified => {
+                let innermost = (at - between.walls[end]).abs() < 1e-9;
+                innermost && (i[d] - between.nodes[end]) as f64 * side <= 0.0
+            }
+        }
     };
     walls.iter().filter(acts).enumerate().collect()
 }
