@@ -76,8 +76,6 @@ static void make_world(lahar_context *context, const settings *s, column *c) {
     check(lahar_world_options_init(&options, sizeof options));
     options.dimension = 2;
     options.spacing = c->h;
-    /* Nodes stand half a cell to either side of the sand's edges: the last nodes that the walls hold are those just outside. */
-    options.origin[0] = options.origin[1] = 0.5 * c->h;
     options.gravity[1] = -gravity;
     options.transfer = s->apic ? LAHAR_TRANSFER_APIC : LAHAR_TRANSFER_PIC_FLIP;
     options.pic_rate = 0.01 * c->wave_speed / (0.35 * c->h);
@@ -85,8 +83,7 @@ static void make_world(lahar_context *context, const settings *s, column *c) {
 
     lahar_wall wall;
     check(lahar_wall_init(&wall, sizeof wall));
-    wall.position = -c->h; /* a wall of quadratic shapes holds nodes up to h / 2 in front of it */
-    wall.axis = 0;
+    wall.axis = 0; /* at x = 0, and then at y = 0 */
     wall.kind = LAHAR_WALL_SLIP;
     check(lahar_wall_add(c->world, &wall, NULL));
     wall.axis = 1;

@@ -96,15 +96,12 @@ contains
     options = lahar_default_options()
     options%dimension = 2
     options%spacing = c%h
-    ! Nodes stand half a cell to either side of the sand's edges: the last nodes that the walls hold are those just outside.
-    options%origin(1:2) = 0.5_lahar_real * c%h
     options%gravity(2) = -gravity
     options%transfer = merge(LAHAR_TRANSFER_APIC, LAHAR_TRANSFER_PIC_FLIP, s%apic)
     options%pic_rate = 0.01_lahar_real * c%wave_speed / (0.35_lahar_real * c%h)
     call c%world%create(context, options)
 
     wall = lahar_default_wall()
-    wall%position = -c%h ! a wall of quadratic shapes holds nodes up to h / 2 in front of it
     wall%axis = 0
     wall%kind = LAHAR_WALL_SLIP
     call c%world%add_wall(wall)

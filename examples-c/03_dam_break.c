@@ -5,8 +5,7 @@
  * T = t sqrt(2 g / a) for the front and tau = t sqrt(g / a) for the height. The experiment's clock starts late: the gate opens
  * in a finite time, so the front is compared as it is and after one shift of time.
  *
- * The wall is a plane of symmetry: the water is computed with its mirror image and runs to both sides. A wall there would
- * hold a strip of half a cell of water back, since quadratic shapes let no velocity grow linearly from a wall. Water has no
+ * The wall is a plane of symmetry: the water is computed with its mirror image and runs to both sides. Water has no
  * tensile strength: with it (zero_tension = 0) the thin tip hangs together, tears, and its speed hangs on details of the grid.
  *
  * New here: a fluid, a start in equilibrium, views to look at the particles in each step. Compile as told in 01_hello.c,

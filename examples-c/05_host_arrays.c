@@ -43,14 +43,13 @@ static host geostatic(int cells) {
     return h;
 }
 
-/* Slip walls left, right and below. They stand half a cell beside the nodes, where quadratic shapes want them. */
+/* Slip walls left, right and below. */
 static void make_world(lahar_context *context, int cells, lahar_world **world, int64_t *right) {
     lahar_world_options options;
     lahar_wall wall;
     check(lahar_world_options_init(&options, sizeof options));
     options.dimension = 2;
     options.spacing = height / cells;
-    options.origin[0] = options.origin[1] = 0.5 * options.spacing;
     options.gravity[1] = -gravity;
     check(lahar_world_create(context, &options, world));
     check(lahar_wall_init(&wall, sizeof wall));

@@ -43,7 +43,7 @@ contains
     end do
   end subroutine geostatic
 
-  !> Slip walls left, right and below. They stand half a cell beside the nodes, where quadratic shapes want them.
+  !> Slip walls left, right and below.
   subroutine make_world(context, cells, world, right)
     type(lahar_context), intent(in) :: context
     integer, intent(in) :: cells
@@ -54,7 +54,6 @@ contains
     options = lahar_default_options()
     options%dimension = 2
     options%spacing = height / cells
-    options%origin(:2) = 0.5_lahar_real * options%spacing
     options%gravity(2) = -gravity
     call world%create(context, options)
     wall = lahar_default_wall()

@@ -43,11 +43,9 @@ static lahar_world *make_world(lahar_context *context, double h) {
     check(lahar_world_options_init(&options, sizeof options));
     options.dimension = 2;
     options.spacing = h;
-    options.origin[0] = options.origin[1] = 0.5 * h; /* the last nodes that the walls hold are half a cell outside */
     options.gravity[1] = -gravity;
     check(lahar_world_create(context, &options, &world));
     check(lahar_wall_init(&wall, sizeof wall));
-    wall.position = -h; /* a wall of quadratic shapes holds nodes up to h / 2 in front of it */
     wall.axis = 0;
     wall.kind = LAHAR_WALL_SLIP;
     check(lahar_wall_add(world, &wall, NULL));

@@ -70,11 +70,9 @@ contains
     options = lahar_default_options()
     options%dimension = 2
     options%spacing = h
-    options%origin(1:2) = 0.5_lahar_real * h ! the last nodes that the walls hold are half a cell outside
     options%gravity(2) = -gravity
     call world%create(context, options)
     wall = lahar_default_wall()
-    wall%position = -h ! a wall of quadratic shapes holds nodes up to h / 2 in front of it
     wall%axis = 0
     wall%kind = LAHAR_WALL_SLIP
     call world%add_wall(wall)

@@ -10,12 +10,13 @@ use crate::error::{Error, Result};
 
 /// A plane wall. Fill it with lahar_wall_init, then set what differs from the defaults.
 ///
-/// A wall acts on every node whose signed distance from the plane, positive on the side of the
-/// material, is at most 0 for linear shapes and h/2 for quadratic ones, with the spacing h. So it
-/// also acts on all nodes behind it, the whole half-space. Put walls on node planes for linear
-/// shapes, and half a cell from node planes for quadratic ones (for instance by an `origin` of
-/// h/2): then the shape function of no free node reaches behind the wall. At other positions the
-/// wall acts too late, by a distance of up to h. Walls act in the order in which they were added.
+/// A wall acts where it stands, at any position on the grid, and the material should be in front of
+/// it; the whole half-space behind is held. Of several walls on a side of an axis the innermost
+/// counts; two that face each other must be half a cell apart. The order in which walls are added
+/// does not matter. (With LAHAR_WALLS_PLAIN a wall acts on every node whose signed distance from
+/// it, positive on the side of the material, is at most 0 for linear shapes and GIMP, h/2 for
+/// quadratic and h for cubic splines, with the spacing h: right on node planes for linear shapes
+/// and between two for quadratic ones, up to h too late elsewhere.)
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct lahar_wall {

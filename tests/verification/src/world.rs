@@ -32,6 +32,8 @@ pub struct Method {
     pub cfl: f64,
     /// What shape functions do next to walls.
     pub walls: Walls,
+    /// How far the nodes stand from the walls at multiples of the spacing, in units of it.
+    pub grid_offset: f64,
     /// Terms of the filter of XPIC and FMPM.
     pub filter_order: i32,
 }
@@ -44,7 +46,8 @@ impl Default for Method {
             pic_rate: 0.0,
             order: StepOrder::Musl,
             cfl: 0.4,
-            walls: Walls::Of(WallTreatment::Plain),
+            walls: Walls::Of(WallTreatment::Modified),
+            grid_offset: 0.0,
             filter_order: 2,
         }
     }
@@ -66,8 +69,7 @@ fn shape<'de, D: Deserializer<'de>>(source: D) -> std::result::Result<ShapeKind,
 pub enum Walls {
     /// Plain, and walls on node planes whatever the shape: the nodes on them and behind are held.
     PlainOnNodes,
-    /// A treatment of the engine; with the plain one, walls stand where no free node's function
-    /// reaches them, see [`Method::wall_shift`].
+    /// A treatment of the engine; where walls stand, see [`Method::wall_shift`].
     Of(WallTreatment),
 }
 
@@ -129,11 +131,11 @@ impl Method {
         }
     }
 
-    /// How far the origin of the grid is shifted so that walls at multiples of the spacing hold no free node's function back:
-    /// quadratic splines that are not modified want walls on half-cell planes, others on node planes. In units of the spacing.
+    /// How far the origin of the grid is shifted, in units of the spacing: by `grid_offset`, and where functions are not
+    /// modified so that walls at multiples of the spacing hold no free node's function back, which is half a cell for quadratic splines.
     pub fn wall_shift(&self) -> f64 {
         let shifted = (ShapeKind::QuadraticBspline, Walls::Of(WallTreatment::Plain));
-        if (self.shape, self.walls) == shifted { 0.5 } else { 0.0 }
+        self.grid_offset + if (self.shape, self.walls) == shifted { 0.5 } else { 0.0 }
     }
 }
 

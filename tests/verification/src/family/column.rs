@@ -81,16 +81,15 @@ fn column(setup: &Setup, h: f64, wave_speed: f64) -> Result<(World, i64)> {
     let mut method = setup.method;
     method.pic_rate = PIC * wave_speed / (0.35 * h);
     let mut options = method.options(h);
-    options.origin = [0.5 * h; 3];
+    options.origin = [setup.method.wall_shift() * h; 3];
     options.gravity = [0.0, -GRAVITY, 0.0];
     let mut world = World::new(&context, &options)?;
-    // a wall of quadratic shapes holds nodes up to h / 2 in front of it
-    wall(&mut world, WallKind::Slip, 0, 1, -h)?;
+    wall(&mut world, WallKind::Slip, 0, 1, 0.0)?;
     let (kind, friction) = match setup.floor_friction {
         None => (WallKind::Sticky, 0.0),
         Some(friction) => (WallKind::Friction, friction),
     };
-    world.add_wall(&Wall { axis: 1, side: 1, position: -h, kind, friction })?;
+    world.add_wall(&Wall { axis: 1, side: 1, position: 0.0, kind, friction })?;
     let rows = (2.0 * setup.cells as f64 * setup.ratio).round() as usize;
     let position = lattice([0.0; 2], [2 * setup.cells, rows], 0.5 * h);
     let k0 = nu / (1.0 - nu);
