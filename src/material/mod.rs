@@ -119,15 +119,24 @@ fn collect_values(context: &Context, model: &Model, named: &[(&str, f64)]) -> Re
         .iter()
         .zip(&given)
         .filter(|(p, v)| p.required && v.is_none())
-        .map(|(p, _)| format!("`{}` [{}]", p.key, p.unit))
+        .map(|(p, _)| match labels(p) {
+            labels if labels.is_empty() => format!("`{}` [{}]", p.key, p.unit),
+            labels => format!("`{}`, one of {labels}: {}", p.key, p.description),
+        })
         .collect();
     if !missing.is_empty() {
         return Err(Error::new(
             Status::MissingParameter,
-            format!("`{}` needs a value for {}", model.name, missing.join(", ")),
+            format!("`{}` needs a value for {}", model.name, missing.join(", and for ")),
         ));
     }
     Ok(model.parameters.iter().zip(given).map(|(p, v)| v.unwrap_or(p.default)).collect())
+}
+
+/// The labels of a choice with their numbers; empty for other kinds.
+fn labels(p: &Parameter) -> String {
+    let labels = p.choices.iter().enumerate().map(|(i, label)| format!("{i} ({label})"));
+    labels.collect::<Vec<_>>().join(", ")
 }
 
 fn check_value(context: &Context, model: &Model, p: &Parameter, value: f64) -> Result<()> {
@@ -135,13 +144,10 @@ fn check_value(context: &Context, model: &Model, p: &Parameter, value: f64) -> R
     if !value.is_finite() {
         return Err(Error::invalid(format!("{name} must be a finite number, got {value}")));
     }
-    if p.kind == ParameterKind::Choice {
-        let labels: Vec<String> =
-            p.choices.iter().enumerate().map(|(i, label)| format!("{i} ({label})")).collect();
-        if value.fract() != 0.0 || value < 0.0 || value >= p.choices.len() as f64 {
-            let text = format!("{name} must be one of {}, got {value}", labels.join(", "));
-            return Err(Error::new(Status::OutOfBounds, text));
-        }
+    let is_label = value.fract() == 0.0 && value >= 0.0 && value < p.choices.len() as f64;
+    if p.kind == ParameterKind::Choice && !is_label {
+        let text = format!("{name} must be one of {}, got {value}", labels(p));
+        return Err(Error::new(Status::OutOfBounds, text));
     }
     if p.kind == ParameterKind::Integer && value.fract() != 0.0 {
         let text = format!("{name} must be a whole number, got {value}");

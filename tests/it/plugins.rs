@@ -97,6 +97,7 @@ fn a_material_is_made_of_named_values() {
         ("youngs_modulus", 1.0e7),
         ("poissons_ratio", 0.3),
         ("friction_angle", 30.0),
+        ("cone", 0.0),
     ];
     let material = Material::new(&context, "drucker_prager", &good).unwrap();
     assert_eq!(material.value("cohesion").unwrap(), 1.0e3);
@@ -122,6 +123,11 @@ fn a_material_is_made_of_named_values() {
     expect(with("dilation_angle", 40.0), Status::OutOfBounds, &["must not exceed friction_angle"]);
     let missing = Material::new(&context, "drucker_prager", &good[..2]).map(|_| ());
     expect(missing, Status::MissingParameter, &["`poissons_ratio` [-]", "`friction_angle` [deg]"]);
+    // Which cone is right depends on the world, which a model does not know: the error says when.
+    let coneless = Material::new(&context, "drucker_prager", &good[..4]).map(|_| ());
+    let choices = "`cone`, one of 0 (compression), 1 (extension), 2 (plane_strain): ";
+    let when = ["triaxial compression (3D", "triaxial extension", "plane strain (2D"];
+    expect(coneless, Status::MissingParameter, &[&[choices], &when[..]].concat());
     let twice = Material::new(&context, "drucker_prager", &[good[0], good[0]]).map(|_| ());
     expect(twice, Status::InvalidArgument, &["given twice"]);
     let unknown = Material::new(&context, "clay", &good).map(|_| ());

@@ -196,7 +196,11 @@ fn build(isa: Isa, options: &Options) -> Result<World> {
     let folder = process::release_folder().unwrap_or_default();
     let models: [Model; 5] = [
         ("linear_elastic", "linear_elastic", &[]),
-        ("drucker_prager", "drucker_prager", &[("friction_angle", 30.0), ("cohesion", 10.0)]),
+        (
+            "drucker_prager",
+            "drucker_prager",
+            &[("friction_angle", 30.0), ("cohesion", 10.0), ("cone", 0.0)], // compression
+        ),
         ("linear_elastic", "linear_elastic_green_naghdi", &[]),
         ("von_mises", "von_mises", &[("yield_stress", 500.0)]),
         ("neo_hookean", "neo_hookean", &[]),

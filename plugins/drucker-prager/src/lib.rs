@@ -27,6 +27,7 @@ pub fn sample(n: usize) -> Result<Driver, String> {
         ("friction_angle", 30.0),
         ("cohesion", 0.0),
         ("dilation_angle", 5.0),
+        ("cone", 0.0),
     ];
     let mut driver = Driver::new(ModelTable::of::<DruckerPrager>().desc(), &named, n)?;
     driver.set_samples(1e-4, [1.0, -2.0, 0.5, 30.0, -1.0, 0.0], [-1e4, -2e4, -1e4, 1e3, 0.0, 0.0]);
@@ -56,8 +57,7 @@ impl Model for DruckerPrager {
             .advised(0.0, 55.0),
         Parameter::real(c"cohesion", c"c", c"Pa", c"Mohr-Coulomb cohesion")
             .typical(1.0e3)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e8),
+            .hard(0.0, f64::INFINITY),
         Parameter::real(c"dilation_angle", c"psi", c"deg", c"Dilation angle, at most phi")
             .default(0.0)
             .hard(0.0, 89.0)
@@ -66,8 +66,9 @@ impl Model for DruckerPrager {
             c"cone",
             c"compression|extension|plane_strain",
             0,
-            c"Which Mohr-Coulomb strength the cone meets",
-        ),
+            c"Where the cone has the strength of Mohr-Coulomb: in triaxial compression (3D, axial symmetry), in triaxial extension (3D; the weakest) or in plane strain (2D, where 30 deg of the compression cone act as 44)",
+        )
+        .required(),
         Parameter::real(
             c"tension_cutoff",
             c"p_t",
@@ -75,8 +76,7 @@ impl Model for DruckerPrager {
             c"Largest mean tension, at most c cot(phi); 0: no tension",
         )
         .default(0.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(0.0, 1.0e8),
+        .hard(0.0, f64::INFINITY),
     ];
     const STATES: &'static [State] = &[plastic::EQUIVALENT_STRAIN, gap::OPENED_STRAIN];
     const INPUTS: &'static [Input] = &[Input::Density];

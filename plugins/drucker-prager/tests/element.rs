@@ -21,6 +21,7 @@ fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
         ("poissons_ratio", NU),
         ("friction_angle", 30.0),
         ("cohesion", 10.0e3),
+        ("cone", COMPRESSION),
     ];
     Driver::new(ModelTable::of::<DruckerPrager>().desc(), &with(&usual, named), n)
 }

@@ -142,6 +142,12 @@ impl Parameter {
         Self::new(LAHAR_PARAMETER_INTEGER, key, symbol, unit, description)
     }
 
+    /// The same parameter without a default, which becomes its typical value.
+    pub const fn required(mut self) -> Self {
+        self.0.required = 1;
+        self
+    }
+
     /// One of the labels in `choices`, which are separated by `|` and counted from 0; the default is `default`.
     pub const fn choice(
         key: &'static CStr,

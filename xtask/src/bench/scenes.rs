@@ -66,6 +66,7 @@ const SAND: &[(&str, f64)] = &[
     ("poissons_ratio", 0.3),
     ("friction_angle", 30.0),
     ("cohesion", 0.0),
+    ("cone", 0.0), // triaxial compression
 ];
 const WATER: &[(&str, f64)] = &[("bulk_modulus", 1e7), ("viscosity", 1.0)];
 
