@@ -472,13 +472,13 @@ typedef struct lahar_parameter_info {
     const char *name;
     // Symbol used in the literature.
     const char *symbol;
-    // SI unit.
+    // SI unit; values are in the units of the host.
     const char *unit;
     // One sentence.
     const char *description;
     // Labels of a choice, separated by '|'; empty for other kinds.
     const char *choices;
-    // Value if none is given.
+    // Value if none is given; of a required parameter a typical value in SI units, or 0.
     double default_value;
     // Smallest accepted value; -infinity for none.
     double hard_min;
@@ -573,8 +573,8 @@ typedef struct lahar_material lahar_material;
 // Makes a material from named values. Parameters that are not named have their defaults.
 //
 // `model`: name of a model of a loaded plugin.
-// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of
-// lahar_parameter_info; NULL is allowed if `count` is 0.
+// `count`, `names`, `values`: the parameters that are given, `count` of each, in the host's
+// units; NULL is allowed if `count` is 0.
 // `material`: set to the new handle, or to NULL on failure; the host frees it with
 // lahar_material_free.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message

@@ -17,17 +17,17 @@
 static const lahar_host_api *host; /* how to tell the host what is wrong */
 
 /* CHANGE the parameters. `default_value` of a required one is a typical value, with which tools try the model. Values outside the hard
- * bounds are refused, those outside the advised ones are warned of. */
+ * bounds are refused, those outside the advised ones are warned of. Units are the host's: no default or advised bound has a dimension. */
 static const lahar_parameter_desc parameters[] = {
     {.key = "youngs_modulus", .symbol = "E", .unit = "Pa", .description = "Young's modulus",
      .kind = LAHAR_PARAMETER_REAL, .required = 1, .default_value = 1e7,
-     .hard_min = DBL_MIN, .hard_max = INFINITY, .advised_min = 1e4, .advised_max = 1e12},
+     .hard_min = DBL_MIN, .hard_max = INFINITY, .advised_min = -INFINITY, .advised_max = INFINITY},
     {.key = "poissons_ratio", .symbol = "nu", .unit = "-", .description = "Poisson's ratio",
      .kind = LAHAR_PARAMETER_REAL, .required = 1, .default_value = 0.3,
      .hard_min = -0.999, .hard_max = 0.4999, .advised_min = 0.0, .advised_max = 0.495},
     {.key = "yield_stress", .symbol = "Y", .unit = "Pa", .description = "Largest von Mises stress",
      .kind = LAHAR_PARAMETER_REAL, .required = 1, .default_value = 1e4,
-     .hard_min = DBL_MIN, .hard_max = INFINITY, .advised_min = 1e2, .advised_max = 1e10},
+     .hard_min = DBL_MIN, .hard_max = INFINITY, .advised_min = -INFINITY, .advised_max = INFINITY},
 };
 enum { PARAMETERS = sizeof parameters / sizeof *parameters };
 

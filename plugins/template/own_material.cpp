@@ -23,11 +23,11 @@ public:
     static constexpr std::int32_t kinematics = LAHAR_KINEMATICS_STRAIN_INCREMENT;
     static constexpr auto parameters = lahar::parameters(
         lahar::real("youngs_modulus", "E", "Pa", "Young's modulus")
-            .typical(1e7).hard(lahar::positive, lahar::infinity).advised(1e4, 1e12),
+            .typical(1e7).hard(lahar::positive, lahar::infinity),
         lahar::real("poissons_ratio", "nu", "-", "Poisson's ratio")
             .typical(0.3).hard(-0.999, 0.4999).advised(0.0, 0.495),
         lahar::real("yield_stress", "Y", "Pa", "Largest von Mises stress")
-            .typical(1e4).hard(lahar::positive, lahar::infinity).advised(1e2, 1e10));
+            .typical(1e4).hard(lahar::positive, lahar::infinity));
     static constexpr auto states = lahar::states(
         lahar::scalar("equivalent_plastic_strain", "-", "Integral of the rate of plastic strain"));
     static constexpr auto inputs = lahar::inputs(LAHAR_INPUT_DENSITY);

@@ -76,11 +76,11 @@ contains
         capabilities=LAHAR_CAPABILITY_THREAD_SAFE + LAHAR_CAPABILITY_POINTWISE + LAHAR_CAPABILITY_DETERMINISTIC, &
         constants=make_constants, point=update_point)
     call model%add_parameter('youngs_modulus', 'E', 'Pa', "Young's modulus", typical=1e7_c_double, &
-        hard_min=tiny(1.0_c_double), advised_min=1e4_c_double, advised_max=1e12_c_double)
+        hard_min=tiny(1.0_c_double))
     call model%add_parameter('poissons_ratio', 'nu', '-', "Poisson's ratio", typical=0.3_c_double, &
         hard_min=-0.999_c_double, hard_max=0.4999_c_double, advised_min=0.0_c_double, advised_max=0.495_c_double)
     call model%add_parameter('yield_stress', 'Y', 'Pa', 'Largest von Mises stress', typical=1e4_c_double, &
-        hard_min=tiny(1.0_c_double), advised_min=1e2_c_double, advised_max=1e10_c_double)
+        hard_min=tiny(1.0_c_double))
     call model%add_state('equivalent_plastic_strain', '-', 'Integral of the rate of plastic strain')
     plugin = library%table()
   end function lahar_plugin_entry_v1

@@ -21,8 +21,8 @@ pub struct lahar_material {
 /// Makes a material from named values. Parameters that are not named have their defaults.
 ///
 /// `model`: name of a model of a loaded plugin.
-/// `count`, `names`, `values`: the parameters that are given, `count` of each, in the units of
-/// lahar_parameter_info; NULL is allowed if `count` is 0.
+/// `count`, `names`, `values`: the parameters that are given, `count` of each, in the host's
+/// units; NULL is allowed if `count` is 0.
 /// `material`: set to the new handle, or to NULL on failure; the host frees it with
 /// lahar_material_free.
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message

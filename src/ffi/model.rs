@@ -59,13 +59,13 @@ pub struct lahar_parameter_info {
     pub name: *const c_char,
     /// Symbol used in the literature.
     pub symbol: *const c_char,
-    /// SI unit.
+    /// SI unit; values are in the units of the host.
     pub unit: *const c_char,
     /// One sentence.
     pub description: *const c_char,
     /// Labels of a choice, separated by '|'; empty for other kinds.
     pub choices: *const c_char,
-    /// Value if none is given.
+    /// Value if none is given; of a required parameter a typical value in SI units, or 0.
     pub default_value: f64,
     /// Smallest accepted value; -infinity for none.
     pub hard_min: f64,

@@ -34,5 +34,6 @@ mod sparse_grid;
 mod templates;
 mod tidy;
 mod umat;
+mod units;
 mod vtp;
 mod write_a_material;

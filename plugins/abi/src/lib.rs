@@ -5,10 +5,12 @@
 //! name is the major version of the ABI; within a major version tables only grow at their end and
 //! every table begins with its size.
 //!
-//! Conventions: SI or any other consistent units; tension positive; symmetric tensors are stored as
-//! the tensor components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx,
-//! ...; stresses have 6 and gradients 9 components in plane strain too. Component `c` of point `k`
-//! of an array stands at `base[c * stride + k]`.
+//! Conventions: the units are the host's, SI or any other consistent ones, so that a model has no
+//! constant, no default and no advised bound with a dimension but 0; what it does not require
+//! follows from other parameters. Tension positive; symmetric tensors are stored as the tensor
+//! components xx, yy, zz, xy, yz, zx; general 3x3 tensors are row-major xx, xy, xz, yx, ...;
+//! stresses have 6 and gradients 9 components in plane strain too. Component `c` of point `k` of
+//! an array stands at `base[c * stride + k]`.
 //!
 //! Life of a plugin: `lahar_plugin_entry_v1` once; then `create`, per instance any number of
 //! `init_state`, `update`, `wave_speed` and extension calls, then `destroy`. Libraries are never
@@ -191,7 +193,7 @@ pub struct lahar_parameter_desc {
     /// 1: the host must give it; 0: `default_value` is used.
     pub required: i32,
     /// Value if the host gives none, inside the hard bounds. Of a required parameter a typical
-    /// value, with which tools try the model.
+    /// value in SI units, with which tools try the model.
     pub default_value: f64,
     /// Smallest value that is accepted; -infinity for none.
     pub hard_min: f64,

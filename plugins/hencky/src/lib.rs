@@ -88,9 +88,7 @@ impl Model for Hencky {
         c"Anand: J. Appl. Mech. 46 (1979) 78-82, doi:10.1115/1.3424532";
     const KINEMATICS: Kinematics = Kinematics::DeformationGradient;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus at small strains")
-            .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY),
+        elastic::YOUNGS_MODULUS.described(c"Young's modulus at small strains"),
         elastic::POISSONS_RATIO.described(c"Poisson's ratio at small strains"),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];

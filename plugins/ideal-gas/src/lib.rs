@@ -182,8 +182,7 @@ impl Model for IdealGas {
         .advised(0.0, 4.0),
         Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity; 1.8e-5 for air")
             .default(0.0)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0),
+            .hard(0.0, f64::INFINITY),
     ];
     const INPUTS: &'static [Input] = &[Input::Density, Input::InternalEnergy, Input::ElementLength];
     const OUTPUTS: Output =

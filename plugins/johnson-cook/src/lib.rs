@@ -46,16 +46,14 @@ impl Model for JohnsonCook {
     const REFERENCE: &'static CStr = c"Johnson, Cook: Proc. 7th Int. Symp. Ballistics (1983) 541-547; Eng. Fract. Mech. 21 (1985) 31-48, \
           doi:10.1016/0013-7944(85)90052-9";
     const PARAMETERS: &'static [Parameter] = &[
-        elastic::YOUNGS_MODULUS.typical(1.24e11).advised(1.0e6, 1.0e12),
+        elastic::YOUNGS_MODULUS.typical(1.24e11),
         elastic::POISSONS_RATIO.typical(0.34),
         Parameter::real(c"yield_stress", c"A", c"Pa", c"First yield stress, slow and cold")
             .typical(9.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e3, 1.0e10),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"hardening_modulus", c"B", c"Pa", c"Hardening at a plastic strain of 1")
             .typical(2.92e8)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e10),
+            .hard(0.0, f64::INFINITY),
         Parameter::real(c"hardening_exponent", c"n", c"-", c"Exponent of the plastic strain")
             .typical(0.31)
             .hard(0.01, 10.0)
@@ -70,9 +68,8 @@ impl Model for JohnsonCook {
             c"1/s",
             c"Plastic rate up to which the rate has no effect",
         )
-        .default(1.0)
-        .hard(f64::MIN_POSITIVE, f64::INFINITY)
-        .advised(1.0e-6, 1.0e3),
+        .typical(1.0)
+        .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"softening_exponent", c"m", c"-", c"Exponent of the temperature")
             .typical(1.09)
             .hard(0.1, 10.0)
@@ -83,9 +80,8 @@ impl Model for JohnsonCook {
             c"K",
             c"Temperature up to which there is no softening",
         )
-        .default(293.15)
-        .hard(0.0, f64::INFINITY)
-        .advised(200.0, 500.0),
+        .typical(293.15)
+        .hard(0.0, f64::INFINITY),
         Parameter::real(
             c"melting_temperature",
             c"T_melt",
@@ -93,12 +89,10 @@ impl Model for JohnsonCook {
             c"Temperature from which on there is no shear strength; above the reference",
         )
         .typical(1356.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(600.0, 4000.0),
+        .hard(0.0, f64::INFINITY),
         Parameter::real(c"heat_capacity", c"c_p", c"J/(kg K)", c"Specific heat capacity")
             .typical(383.0)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(50.0, 5000.0),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(
             c"taylor_quinney",
             c"chi",

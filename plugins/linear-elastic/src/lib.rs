@@ -40,12 +40,7 @@ impl Model for LinearElastic {
     const SUMMARY: &'static CStr = c"Isotropic linear elasticity in rate form";
     const REFERENCE: &'static CStr =
         c"Belytschko, Liu, Moran, Elkhodary: Nonlinear Finite Elements, 2nd ed. (2014), section 5.4";
-    const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
-            .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY),
-        elastic::POISSONS_RATIO,
-    ];
+    const PARAMETERS: &'static [Parameter] = &[elastic::YOUNGS_MODULUS, elastic::POISSONS_RATIO];
     const INPUTS: &'static [Input] = &[Input::Density];
     const HAS_TANGENT: bool = true;
     elastic_model!();

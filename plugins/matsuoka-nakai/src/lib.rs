@@ -59,8 +59,7 @@ impl Model for MatsuokaNakai {
         .advised(0.0, 55.0),
         Parameter::real(c"cohesion", c"c", c"Pa", c"Cohesion of the same Mohr-Coulomb strength")
             .typical(1.0e3)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e8),
+            .hard(0.0, f64::INFINITY),
         Parameter::real(
             c"dilation_angle",
             c"psi",
@@ -77,8 +76,7 @@ impl Model for MatsuokaNakai {
             c"Largest mean tension, at most c cot(phi); 0: no tension",
         )
         .default(0.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(0.0, 1.0e8),
+        .hard(0.0, f64::INFINITY),
     ];
     const STATES: &'static [State] = &[
         plastic::EQUIVALENT_STRAIN,

@@ -39,6 +39,11 @@ pub struct ModifiedCamClay {
     overconsolidation: f64,
 }
 
+/// p_min [Pa] from the parameter and p_r [Pa].
+fn minimum_pressure(given: f64, reference: f64) -> f64 {
+    if given > 0.0 { given } else { 0.01 * reference }
+}
+
 /// Where a point stands: void ratio, preconsolidation pressure, equivalent plastic strain.
 type States = [f64; 3];
 
@@ -87,9 +92,8 @@ impl Model for ModifiedCamClay {
             c"Pa",
             c"Pressure at which reference_void_ratio is given",
         )
-        .default(1.0e3)
-        .hard(1e-300, 1e300)
-        .advised(1.0e2, 1.0e6),
+        .typical(1.0e3)
+        .hard(1e-300, 1e300),
         Parameter::real(
             c"overconsolidation_ratio",
             c"OCR",
@@ -103,11 +107,10 @@ impl Model for ModifiedCamClay {
             c"minimum_pressure",
             c"p_min",
             c"Pa",
-            c"Smallest preconsolidation pressure; elasticity is linear below it",
+            c"Smallest preconsolidation pressure, elasticity is linear below it; 0: reference_pressure / 100",
         )
-        .default(1.0e3)
-        .hard(1e-300, 1e300)
-        .advised(10.0, 1.0e4),
+        .default(0.0)
+        .hard(0.0, 1e300),
     ];
     const STATES: &'static [State] = &[
         State::scalar(c"void_ratio", c"-", c"Volume of voids over that of grains"),
@@ -131,6 +134,7 @@ impl Model for ModifiedCamClay {
                 "swelling_index is {kappa}, but must be less than compression_index, which is {lambda}"
             ));
         }
+        let least = minimum_pressure(least, reference);
         let loosest = void_ratio - lambda * (least / reference).ln();
         if loosest <= 0.0 {
             return Err(format!(
@@ -146,6 +150,7 @@ impl Model for ModifiedCamClay {
         let [slope, lambda, kappa, nu, void_ratio, reference, ocr, least] = values[..] else {
             return Err("expected 8 values".into());
         };
+        let least = minimum_pressure(least, reference);
         let shear_ratio = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu);
         let elastic = Swelling { slope: kappa, shear_ratio, minimum: least };
         let line = 1.0 + void_ratio - lambda * (least / reference).ln();

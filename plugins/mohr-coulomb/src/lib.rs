@@ -54,8 +54,7 @@ impl Model for MohrCoulomb {
             .advised(0.0, 55.0),
         Parameter::real(c"cohesion", c"c", c"Pa", c"Cohesion at the peak")
             .typical(1.0e3)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e8),
+            .hard(0.0, f64::INFINITY),
         Parameter::real(
             c"dilation_angle",
             c"psi",
@@ -72,8 +71,7 @@ impl Model for MohrCoulomb {
             c"Largest principal tension, at most c cot(phi); falls like c; 0: no tension",
         )
         .default(0.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(0.0, 1.0e8),
+        .hard(0.0, f64::INFINITY),
         Parameter::choice(
             c"softening",
             c"none|exponential|linear",
@@ -100,8 +98,7 @@ impl Model for MohrCoulomb {
         .advised(0.0, 55.0),
         Parameter::real(c"residual_cohesion", c"c_r", c"Pa", c"Cohesion after softening")
             .default(0.0)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e8),
+            .hard(0.0, f64::INFINITY),
         Parameter::real(
             c"residual_dilation_angle",
             c"psi_r",

@@ -165,10 +165,7 @@ impl Model for MuI {
         c"Dry granular flow: mu(I) rheology, elastic at rest, open in tension";
     const REFERENCE: &'static CStr = c"Jop, Forterre, Pouliquen: A constitutive law for dense granular flows, Nature 441 (2006), doi:10.1038/nature04801; Dunatunga, Kamrin: J. Fluid Mech. 779 (2015), doi:10.1017/jfm.2015.383";
     const PARAMETERS: &'static [Parameter] = &[
-        elastic::YOUNGS_MODULUS
-            .described(c"Young's modulus of the packing")
-            .typical(1.0e6)
-            .advised(1.0e4, 1.0e9),
+        elastic::YOUNGS_MODULUS.described(c"Young's modulus of the packing").typical(1.0e6),
         elastic::POISSONS_RATIO.described(c"Poisson's ratio of the packing").advised(0.0, 0.45),
         Parameter::real(c"static_friction", c"mu_s", c"-", c"Friction tau/p of slow flow")
             .typical(0.3819)
@@ -194,12 +191,10 @@ impl Model for MuI {
         .advised(0.01, 10.0),
         Parameter::real(c"grain_diameter", c"d", c"m", c"Diameter of the grains")
             .typical(1.0e-3)
-            .hard(1.0e-12, f64::INFINITY)
-            .advised(1.0e-5, 1.0),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"grain_density", c"rho_s", c"kg/m3", c"Density of the grains' matter")
-            .default(2500.0)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(100.0, 10_000.0),
+            .typical(2500.0)
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
     ];
     const STATES: &'static [State] = &[
         State::scalar(

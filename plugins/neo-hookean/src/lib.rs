@@ -53,9 +53,7 @@ impl Model for NeoHookean {
     const REFERENCE: &'static CStr = c"Simo, Pister: Comput. Methods Appl. Mech. Engrg 46 (1984) 201-215, doi:10.1016/0045-7825(84)90062-8";
     const KINEMATICS: Kinematics = Kinematics::DeformationGradient;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus at small strains")
-            .typical(1.0e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY),
+        elastic::YOUNGS_MODULUS.described(c"Young's modulus at small strains"),
         elastic::POISSONS_RATIO.described(c"Poisson's ratio at small strains"),
     ];
     const INPUTS: &'static [Input] = &[Input::Density];

@@ -10,8 +10,7 @@ use std::marker::PhantomData;
 pub const BULK_MODULUS: Parameter =
     Parameter::real(c"bulk_modulus", c"K", c"Pa", c"Bulk modulus at zero pressure")
         .typical(2.0e6)
-        .hard(f64::MIN_POSITIVE, f64::INFINITY)
-        .advised(1.0e3, 1.0e10);
+        .hard(f64::MIN_POSITIVE, f64::INFINITY);
 /// The parameter `equation_of_state`.
 pub const EQUATION_OF_STATE: Parameter = Parameter::choice(
     c"equation_of_state",

@@ -54,8 +54,7 @@ impl Model for Newtonian {
         fluid::BULK_MODULUS,
         Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity")
             .default(0.0)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 1.0e4),
+            .hard(0.0, f64::INFINITY),
         fluid::EQUATION_OF_STATE,
         fluid::EXPONENT,
         fluid::ZERO_TENSION,

@@ -32,13 +32,11 @@ impl Model for TaitWater {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"bulk_modulus", c"K", c"Pa", c"rho0 c0^2: of the liquid at volume ratio 1")
             .typical(2.2e9)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0e4, 1.0e10),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         EXPONENT,
         Parameter::real(c"viscosity", c"mu", c"Pa s", c"Dynamic viscosity")
-            .default(1.0e-3)
-            .hard(0.0, f64::INFINITY)
-            .advised(0.0, 10.0),
+            .typical(1.0e-3)
+            .hard(0.0, f64::INFINITY),
         Parameter::real(
             c"background_pressure",
             c"p_b",
@@ -46,15 +44,14 @@ impl Model for TaitWater {
             c"Pressure at volume ratio 1; 0: pressures are counted from that of the atmosphere",
         )
         .default(0.0)
-        .advised(0.0, 2.0e5),
+        .advised(0.0, f64::INFINITY),
         Parameter::real(
             c"cavitation_pressure",
             c"p_c",
             c"Pa",
-            c"Pressure at which the liquid opens, at most p_b; the default is the vapour pressure at 20 degrees C less 101325 Pa",
+            c"Pressure at which the liquid opens, at most p_b: that of the vapour, less the atmosphere if p_b is 0",
         )
-        .default(-98_986.0)
-        .advised(-1.0e8, 1.0e4),
+        .typical(-98_986.0),
     ];
     const OUTPUTS: Output = Output::WAVE_SPEED.and(Output::DIFFUSIVITY).and(Output::STATUS);
     fluid_model!();

@@ -52,8 +52,7 @@ impl Model for NorSand {
             c"Shear modulus at elastic_reference_pressure",
         )
         .typical(3.0e7)
-        .hard(f64::MIN_POSITIVE, f64::INFINITY)
-        .advised(1.0e6, 5.0e8),
+        .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"elastic_exponent", c"m", c"-", c"Moduli grow with p to this power")
             .default(0.5)
             .hard(0.0, 1.0)
@@ -64,9 +63,8 @@ impl Model for NorSand {
             c"Pa",
             c"Pressure at which shear_modulus is given",
         )
-        .default(1.0e5)
-        .hard(1e-300, 1e300)
-        .advised(1.0e3, 1.0e6),
+        .typical(1.0e5)
+        .hard(1e-300, 1e300),
         elastic::POISSONS_RATIO.typical(0.2).hard(0.0, 0.49).advised(0.05, 0.4),
         Parameter::real(
             c"critical_stress_ratio",
@@ -101,9 +99,8 @@ impl Model for NorSand {
             c"Pa",
             c"Pressure at which critical_void_ratio is given",
         )
-        .default(1.0e3)
-        .hard(1e-300, 1e300)
-        .advised(1.0e2, 1.0e6),
+        .typical(1.0e3)
+        .hard(1e-300, 1e300),
         Parameter::real(
             c"volumetric_coupling",
             c"N",
@@ -158,11 +155,10 @@ impl Model for NorSand {
             c"minimum_pressure",
             c"p_min",
             c"Pa",
-            c"Elasticity is linear below it; isotropic yield is not below it",
+            c"Elasticity is linear below it, isotropic yield is not below it; 0: elastic_reference_pressure / 100",
         )
-        .default(1.0e3)
-        .hard(1e-300, 1e300)
-        .advised(10.0, 1.0e4),
+        .default(0.0)
+        .hard(0.0, 1e300),
     ];
     const STATES: &'static [State] = &[
         State::scalar(c"void_ratio", c"-", c"Volume of voids over that of grains"),
@@ -197,6 +193,7 @@ impl Model for NorSand {
         else {
             return Err("expected 16 values".into());
         };
+        let least = if least > 0.0 { least } else { 0.01 * elastic_reference };
         let shear_ratio = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu);
         let bulk = shear * (least / elastic_reference).powf(m) / shear_ratio;
         if !(bulk.is_finite() && bulk > 0.0) {

@@ -3,12 +3,11 @@
 use crate::table::Parameter;
 use crate::tensor::{contract, deviator, trace};
 
-/// Young's modulus E [Pa] as a parameter; models change what is typical or advised of theirs.
+/// Young's modulus E [Pa] as a parameter; models change what is typical of theirs.
 pub const YOUNGS_MODULUS: Parameter =
     Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
         .typical(1.0e7)
-        .hard(f64::MIN_POSITIVE, f64::INFINITY)
-        .advised(1.0e4, 1.0e11);
+        .hard(f64::MIN_POSITIVE, f64::INFINITY);
 
 /// Poisson's ratio ν [–] as a parameter.
 pub const POISSONS_RATIO: Parameter =

@@ -52,16 +52,14 @@ impl Model for OwnMaterial {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::real(c"youngs_modulus", c"E", c"Pa", c"Young's modulus")
             .typical(1e7)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1e4, 1e12),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(c"poissons_ratio", c"nu", c"-", c"Poisson's ratio")
             .typical(0.3)
             .hard(-0.999, 0.4999)
             .advised(0.0, 0.495),
         Parameter::real(c"yield_stress", c"Y", c"Pa", c"Largest von Mises stress")
             .typical(1e4)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1e2, 1e10),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
     ];
     const STATES: &'static [State] = &[State::scalar(
         c"equivalent_plastic_strain",

@@ -32,13 +32,11 @@ const SHEAR_MODULUS: Parameter = Parameter::real(
     c"Shear modulus below the yield stress; a hundred times the yield stress or more",
 )
 .typical(1.0e4)
-.hard(f64::MIN_POSITIVE, f64::INFINITY)
-.advised(1.0, 1.0e8);
+.hard(f64::MIN_POSITIVE, f64::INFINITY);
 const YIELD_STRESS: Parameter =
     Parameter::real(c"yield_stress", c"tau_y", c"Pa", c"Shear stress at which it yields")
         .typical(50.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(0.0, 1.0e5);
+        .hard(0.0, f64::INFINITY);
 const REFERENCE: &CStr = c"Saramito: A new elastoviscoplastic model based on the Herschel-Bulkley viscoplastic model, J. Non-Newton. Fluid Mech. 158 (2009), doi:10.1016/j.jnnfm.2008.12.001";
 
 /// What the two models have in common.
@@ -99,8 +97,7 @@ impl Model for Bingham {
             c"Plastic viscosity, beyond the yield stress",
         )
         .typical(10.0)
-        .hard(0.0, f64::INFINITY)
-        .advised(0.0, 1.0e5),
+        .hard(0.0, f64::INFINITY),
         fluid::EQUATION_OF_STATE,
         fluid::EXPONENT,
         fluid::ZERO_TENSION,
@@ -151,8 +148,7 @@ impl Model for HerschelBulkley {
             c"Shear stress beyond that of yield, at 1/s",
         )
         .typical(10.0)
-        .hard(f64::MIN_POSITIVE, f64::INFINITY)
-        .advised(1.0e-4, 1.0e5),
+        .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(
             c"flow_index",
             c"n",

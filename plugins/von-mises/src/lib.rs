@@ -48,12 +48,11 @@ impl Model for VonMises {
     const REFERENCE: &'static CStr =
         c"Simo, Hughes: Computational Inelasticity (1998), section 3.3, doi:10.1007/b98904";
     const PARAMETERS: &'static [Parameter] = &[
-        elastic::YOUNGS_MODULUS.typical(2.0e11).advised(1.0e3, 1.0e12),
+        elastic::YOUNGS_MODULUS.typical(2.0e11),
         elastic::POISSONS_RATIO,
         Parameter::real(c"yield_stress", c"sigma_0", c"Pa", c"First yield stress in uniaxial tension")
             .typical(2.5e8)
-            .hard(f64::MIN_POSITIVE, f64::INFINITY)
-            .advised(1.0, 1.0e10),
+            .hard(f64::MIN_POSITIVE, f64::INFINITY),
         Parameter::real(
             c"hardening_modulus",
             c"H",
@@ -61,7 +60,7 @@ impl Model for VonMises {
             c"Slope of the yield stress over the plastic strain; negative: softening, whose results depend on the grid",
         )
         .default(0.0)
-        .advised(0.0, 1.0e11),
+        .advised(0.0, f64::INFINITY),
         Parameter::real(
             c"voce_stress",
             c"Q",
@@ -69,7 +68,7 @@ impl Model for VonMises {
             c"What Voce hardening adds to the yield stress at saturation; 0: none; negative: softening",
         )
         .default(0.0)
-        .advised(0.0, 1.0e10),
+        .advised(0.0, f64::INFINITY),
         Parameter::real(c"voce_rate", c"b", c"-", c"Rate of Voce hardening over the plastic strain")
             .default(10.0)
             .hard(0.0, f64::INFINITY)

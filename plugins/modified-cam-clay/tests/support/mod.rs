@@ -10,7 +10,7 @@ use lahar_plugin::{Driver, ModelTable};
 /// Slope of the critical state line of the tests [-].
 pub const M: f64 = 1.2;
 
-/// λ = 0.2, κ = 0.04, M = 1.2; other values as named.
+/// λ = 0.2, κ = 0.04, M = 1.2, e_N at 1 kPa, which is p_min too; other values as named.
 pub fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
     let usual = [
         ("critical_stress_ratio", M),
@@ -18,6 +18,8 @@ pub fn try_driver(named: &[(&str, f64)], n: usize) -> Result<Driver, String> {
         ("swelling_index", 0.04),
         ("poissons_ratio", 0.3),
         ("reference_void_ratio", 2.0),
+        ("reference_pressure", 1e3),
+        ("minimum_pressure", 1e3),
     ];
     Driver::new(ModelTable::of::<ModifiedCamClay>().desc(), &with(&usual, named), n)
 }
