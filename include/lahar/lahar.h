@@ -900,7 +900,7 @@ typedef struct lahar_particles {
     // Velocities [m/s], shape [count, dimension]; not given: 0.
     lahar_array velocity;
     // Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given:
-    // 0.
+    // 0. Those that the model would forget are refused by the next step, see lahar_body_write.
     lahar_array stress;
     // Mass density [kg/m^3], > 0; used if `mass` is not given.
     double density;
@@ -926,7 +926,8 @@ typedef struct lahar_fill {
     // Velocity of all particles [m/s], shape [3]; default 0.
     double velocity[3];
     // Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6];
-    // default 0.
+    // default 0. One that the model would forget is refused by the next step, see
+    // lahar_body_write.
     double stress[6];
 } lahar_fill;
 
@@ -1118,6 +1119,13 @@ lahar_status lahar_body_read(const lahar_world *world,
 // A value that is not finite is refused by this call, and nothing is written. Masses and volumes
 // that are not positive and positions outside the grid are found by the next step, which returns
 // LAHAR_ERROR_NON_FINITE_INPUT until the host writes valid ones.
+//
+// A stress that the model would forget is found by the next step too: that of a hyperelastic solid
+// follows from `deformation_gradient`, that of a fluid from its state, that of a gas from
+// `strain_energy`. The step returns LAHAR_ERROR_MATERIAL_REFUSED until the stress that was given
+// (here, in a view, or when the body was added) is the one that follows; the message says what to
+// write or call. A stress beyond the yield surface is returned to it, with a warning in the log.
+// The viscous stress of a body that moves is not checked.
 //
 // `count`, `values`, strides: as in lahar_body_read.
 // Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
@@ -1596,7 +1604,8 @@ lahar_status lahar_world_settle(lahar_world *world,
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
 // is 0 at the present time or not along an axis; a value out of its range; the model refuses the
 // stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
-// gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// gradient), LAHAR_ERROR_MATERIAL_REFUSED (the model would forget the stress: a fluid takes k0 = 1
+// alone, a gas what its energy gives), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_set_k0_stress(lahar_world *world,
                                       int64_t body,
@@ -1609,7 +1618,9 @@ lahar_status lahar_body_set_k0_stress(lahar_world *world,
 // the state variables are lost. Call it after writing the field "stress".
 //
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
-// model refuses the stress; the old state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// model refuses the stress; the old state stays), LAHAR_ERROR_MATERIAL_REFUSED (the model would
+// forget the stress, see lahar_body_write; the old state stays), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_init_state(lahar_world *world, int64_t body);
 

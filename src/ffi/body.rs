@@ -49,7 +49,7 @@ pub struct lahar_particles {
     /// Velocities [m/s], shape [count, dimension]; not given: 0.
     pub velocity: lahar_array,
     /// Cauchy stresses xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [count, 6]; not given:
-    /// 0.
+    /// 0. Those that the model would forget are refused by the next step, see lahar_body_write.
     pub stress: lahar_array,
     /// Mass density [kg/m^3], > 0; used if `mass` is not given.
     pub density: f64,
@@ -99,7 +99,8 @@ pub struct lahar_fill {
     /// Velocity of all particles [m/s], shape [3]; default 0.
     pub velocity: [f64; 3],
     /// Cauchy stress of all particles xx, yy, zz, xy, yz, zx [Pa], tension positive, shape [6];
-    /// default 0.
+    /// default 0. One that the model would forget is refused by the next step, see
+    /// lahar_body_write.
     pub stress: [f64; 6],
 }
 

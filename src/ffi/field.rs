@@ -186,6 +186,13 @@ pub unsafe extern "C" fn lahar_body_read(
 /// that are not positive and positions outside the grid are found by the next step, which returns
 /// LAHAR_ERROR_NON_FINITE_INPUT until the host writes valid ones.
 ///
+/// A stress that the model would forget is found by the next step too: that of a hyperelastic solid
+/// follows from `deformation_gradient`, that of a fluid from its state, that of a gas from
+/// `strain_energy`. The step returns LAHAR_ERROR_MATERIAL_REFUSED until the stress that was given
+/// (here, in a view, or when the body was added) is the one that follows; the message says what to
+/// write or call. A stress beyond the yield surface is returned to it, with a warning in the log.
+/// The viscous stress of a body that moves is not checked.
+///
 /// `count`, `values`, strides: as in lahar_body_read.
 /// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
 /// LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.

@@ -278,7 +278,8 @@ fn to_criteria(given: &lahar_settle_criteria) -> Result<Criteria, Error> {
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
 /// is 0 at the present time or not along an axis; a value out of its range; the model refuses the
 /// stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
-/// gradient), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// gradient), LAHAR_ERROR_MATERIAL_REFUSED (the model would forget the stress: a fluid takes k0 = 1
+/// alone, a gas what its energy gives), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_set_k0_stress(
@@ -301,7 +302,9 @@ pub unsafe extern "C" fn lahar_body_set_k0_stress(
 /// the state variables are lost. Call it after writing the field "stress".
 ///
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
-/// model refuses the stress; the old state stays), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+/// model refuses the stress; the old state stays), LAHAR_ERROR_MATERIAL_REFUSED (the model would
+/// forget the stress, see lahar_body_write; the old state stays), LAHAR_ERROR_BUSY,
+/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_init_state(world: *mut lahar_world, body: i64) -> lahar_status {

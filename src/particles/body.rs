@@ -43,6 +43,8 @@ pub struct Body {
     pub runs: Vec<Run>,
     /// Edge lengths of the particles at first.
     pub sizes: Sizes,
+    /// Whether the host gave stresses that have not been checked.
+    pub stress_given: bool,
 }
 
 impl Body {

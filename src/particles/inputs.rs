@@ -1,8 +1,27 @@
 //! The inputs of models, from columns of particles.
 
-use super::Layout;
+use super::{Layout, Particles};
 use crate::material::Input;
 use crate::material::scratch::Scratch;
+
+/// Fills the start (stress, state, deformation gradient) and the inputs of the particles from
+/// `first` on; `spacing` is that of the grid [m].
+pub fn fill_start(scratch: &mut Scratch<'_>, particles: &Particles, first: usize, spacing: f64) {
+    let (layout, n, stride) = (particles.layout, scratch.n, scratch.stride);
+    let column = |c: usize| &particles.column(c)[first..first + n];
+    let gradient = layout.deformation_gradient.map_or(0, |columns| columns.first);
+    for (rows, from) in [
+        (&mut *scratch.stress0, layout.stress),
+        (&mut *scratch.state0, layout.state.first),
+        (&mut *scratch.deformation_gradient, gradient),
+    ] {
+        for (c, row) in rows.chunks_mut(stride).enumerate() {
+            row[..n].copy_from_slice(column(from + c));
+        }
+    }
+    fill_density(scratch, &layout, column);
+    fill_inputs(scratch, &layout, column, &particles.id[first..first + n], spacing);
+}
 
 /// Fills the inputs that the model takes, but density; `column` gives a column of the points, `ids`
 /// those of their particles, `spacing` is that of the grid [m].

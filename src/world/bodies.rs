@@ -7,7 +7,7 @@ use crate::error::{Error, Place, Result, Status};
 use crate::material::Material;
 use crate::material::scratch::with_scratch;
 use crate::memory::reserve;
-use crate::particles::inputs::{fill_density, fill_inputs};
+use crate::particles::inputs::fill_start;
 use crate::particles::seeding::{Fill, Region, fill};
 use crate::particles::{Body, CHUNK, Carrier, Layout, Particles, Rule, Sizes};
 use crate::step::options::Options;
@@ -82,8 +82,10 @@ impl<const D: usize> Parts<D> {
                 particles.column_mut(gradient.first + c).fill(1.0);
             }
         }
-        let material = material.clone();
-        self.insert(Body { id, layer: 0, material, particles, runs: Vec::new(), sizes })
+        let stressed = |array: &Strided<'_>| (0..n).any(|k| (0..6).any(|c| array.get(c, k) != 0.0));
+        let stress_given = arrays.stress.as_ref().is_some_and(stressed);
+        let (material, runs) = (material.clone(), Vec::new());
+        self.insert(Body { id, layer: 0, material, particles, runs, sizes, stress_given })
     }
 
     /// Adds a body that fills a region.
@@ -323,19 +325,8 @@ pub(super) fn init_state(body: &mut Body, spacing: f64) -> Result<()> {
     for start in (0..particles.len()).step_by(CHUNK) {
         let n = CHUNK.min(particles.len() - start);
         with_scratch(material, n, |s| {
-            let column = |c: usize| &particles.column(c)[start..start + n];
-            fill_density(s, &layout, column);
-            fill_inputs(s, &layout, column, &particles.id[start..start + n], spacing);
-            for k in 0..n {
-                for c in 0..6 {
-                    s.stress0[c * s.stride + k] = particles.column(layout.stress + c)[start + k];
-                }
-                for c in 0..layout.state.count {
-                    let value = particles.column(layout.state.first + c)[start + k];
-                    s.state0[c * s.stride + k] = value;
-                    s.state1[c * s.stride + k] = value;
-                }
-            }
+            fill_start(s, particles, start, spacing);
+            s.state1.copy_from_slice(s.state0);
             material.init_state(&mut s.batch()).map_err(|error| match error.status {
                 Status::MaterialFailed => Error { status: Status::MaterialRefused, ..error },
                 _ => error,

@@ -109,6 +109,7 @@ impl World {
             s.freshness.field_opened(field);
             let (info, first) = find(s, body, field)?;
             let at = s.body_position(body)?;
+            s.bodies[at].stress_given |= field == "stress";
             let particles = &mut s.bodies[at].particles;
             Ok(FieldSliceMut {
                 count: particles.len(),

@@ -6,6 +6,7 @@
 pub mod bodies;
 pub mod conditions;
 pub mod fields;
+mod given_stress;
 pub mod host_arrays;
 pub mod queries;
 pub mod statics;
@@ -236,6 +237,11 @@ impl World {
                     ..error
                 })?;
                 s.freshness.was_checked();
+            }
+            for body in s.bodies.iter_mut().filter(|body| body.stress_given) {
+                let warning = given_stress::check(body, s.method.options.spacing)?;
+                warning.iter().for_each(|text| self.context.log(LogLevel::Warning, text));
+                body.stress_given = false;
             }
             let limits = s.limits()?;
             s.freshness.limits_found(limits);

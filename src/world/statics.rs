@@ -3,10 +3,12 @@
 use crate::background::{Background, block_nodes, nodes_of};
 use crate::boundary::{Reaching, law::constrain};
 use crate::error::{Error, Result, Status};
+use crate::log::LogLevel;
 use crate::material::Kinematics;
 use crate::step::parts::Parts;
 
 use super::bodies::init_state;
+use super::given_stress;
 use super::{World, on};
 
 /// Steps between two checks of the equilibrium in [`World::settle`].
@@ -156,18 +158,22 @@ impl World {
         k0: f64,
     ) -> Result<()> {
         self.check_alive()?;
-        on!(&mut self, s => {
+        let warning = on!(&mut self, s => {
             let at = s.body_position(body)?;
             let ground = s.level_ground(at, surface, unit_weight, k0)?;
             s.start_anew(at, Some(&ground))
-        })
+        })?;
+        warning.iter().for_each(|text| self.context.log(LogLevel::Warning, text));
+        Ok(())
     }
 
     /// Makes the model of a body derive its state from the stresses anew, as when the body was
     /// added; the old state is lost.
     pub fn init_body_state(&mut self, body: i64) -> Result<()> {
         self.check_alive()?;
-        on!(&mut self, s => s.start_anew(s.body_position(body)?, None))
+        let warning = on!(&mut self, s => s.start_anew(s.body_position(body)?, None))?;
+        warning.iter().for_each(|text| self.context.log(LogLevel::Warning, text));
+        Ok(())
     }
 }
 
@@ -315,22 +321,34 @@ impl<const D: usize> Parts<D> {
 
     /// Sets the stresses if `ground` is given, and makes the model derive its state from them; on
     /// error the old ones stay.
-    fn start_anew(&mut self, at: usize, ground: Option<&Ground>) -> Result<()> {
+    fn start_anew(&mut self, at: usize, ground: Option<&Ground>) -> Result<Option<String>> {
         let layout = self.bodies[at].particles.layout;
         let ranges = [(layout.stress, 6), (layout.state.first, layout.state.count)];
         let old = ranges.map(|(c, n)| self.bodies[at].particles.columns(c, n).to_vec());
         if let Some(ground) = ground {
             self.set_ground_stress(at, ground);
         }
-        if let Err(error) = init_state(&mut self.bodies[at], self.method.options.spacing) {
-            for ((c, n), old) in ranges.into_iter().zip(old) {
-                self.bodies[at].particles.columns_mut(c, n).copy_from_slice(&old);
+        let spacing = self.method.options.spacing;
+        let warning = init_state(&mut self.bodies[at], spacing)
+            .map_err(|error| Error { status: Status::InvalidArgument, ..error })
+            .and_then(|()| {
+                let body = &self.bodies[at];
+                let stressed = body.particles.columns(layout.stress, 6).iter().any(|s| *s != 0.0);
+                let given = stressed || body.stress_given;
+                if given { given_stress::check(body, spacing) } else { Ok(None) }
+            });
+        match &warning {
+            Ok(_) => self.bodies[at].stress_given = false,
+            Err(_) => {
+                for ((c, n), old) in ranges.into_iter().zip(old) {
+                    self.bodies[at].particles.columns_mut(c, n).copy_from_slice(&old);
+                }
+                return warning;
             }
-            return Err(Error { status: Status::InvalidArgument, ..error });
         }
         self.freshness.field_opened("stress");
         self.freshness.fields_closed();
-        Ok(())
+        warning
     }
 }
 

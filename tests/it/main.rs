@@ -15,6 +15,7 @@ mod equations;
 mod examples;
 mod fortran;
 mod fresh;
+mod given_stress;
 mod header;
 mod host;
 mod invariants;
