@@ -171,6 +171,10 @@ impl Context {
                 }
             }
         }
+        let names: Vec<&str> = plugin.models.iter().map(|m| m.name).collect();
+        let (id, version, path) = (plugin.id, plugin.version, plugin.path.display());
+        let text = format!("loaded the plugin {id} {version} from {path}: {}", names.join(", "));
+        self.log(LogLevel::Information, &text);
         plugins.push(plugin);
         Ok(plugins.len() - 1)
     }

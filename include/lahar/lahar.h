@@ -301,6 +301,10 @@ lahar_status lahar_context_threads_used(const lahar_context *context, int32_t *t
 
 // Sets where log lines go. Without this call lahar is silent.
 //
+// Callback and `user` must stay valid until others are set and the calls that other threads made
+// before have returned, or until the context has ended, which may be long after
+// lahar_context_free: its worlds, materials and views keep it, and log.
+//
 // `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
 // `user`: passed to the callback on every thread that calls functions of this context; lahar does
 // not follow it.
@@ -608,6 +612,9 @@ lahar_status lahar_material_value(const lahar_material *material,
  * Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a
  * result. Any consistent units may be used; those named are SI. In two dimensions a world is plane
  * strain and 1 m thick.
+ *
+ * All bodies share the one velocity field of the grid: bodies that come within a cell or two of
+ * each other are welded, and neither slide nor part freely. There is no contact between them yet.
  */
 
 // Shape functions: linear. Use them with FLIP and LAHAR_ORDER_MUSL, see LAHAR_ORDER_USL.
@@ -717,7 +724,9 @@ typedef struct lahar_world_options {
     double cfl;
     // Gravity [m/s^2], shape [3]; default 0.
     double gravity[3];
-    // Local non-viscous damping [-], in [0, 1); default 0.
+    // Local non-viscous damping alpha [-], in [0, 1); default 0. For statics only: it takes the
+    // part alpha of every acceleration along the velocity, so that a body in free fall falls with
+    // (1 - alpha) g.
     double damping;
     // Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     double box_min[3];
@@ -776,7 +785,8 @@ void lahar_world_free(lahar_world *world);
 // Thread: owner
 lahar_status lahar_world_set_gravity(lahar_world *world, const double gravity[3]);
 
-// Sets the local non-viscous damping from the next step on.
+// Sets the local non-viscous damping from the next step on. It slows all motion, free fall too:
+// set it back to 0 before dynamics.
 //
 // `damping`: [-], in [0, 1).
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,

@@ -182,6 +182,10 @@ impl User {
 
 /// Sets where log lines go. Without this call lahar is silent.
 ///
+/// Callback and `user` must stay valid until others are set and the calls that other threads made
+/// before have returned, or until the context has ended, which may be long after
+/// lahar_context_free: its worlds, materials and views keep it, and log.
+///
 /// `callback`: see lahar_log_callback; lahar_log_stderr is a ready one; NULL: no log.
 /// `user`: passed to the callback on every thread that calls functions of this context; lahar does
 /// not follow it.

@@ -3,6 +3,9 @@
 //! Vectors of fixed size have three components; in two dimensions the third is ignored, or 0 in a
 //! result. Any consistent units may be used; those named are SI. In two dimensions a world is plane
 //! strain and 1 m thick.
+//!
+//! All bodies share the one velocity field of the grid: bodies that come within a cell or two of
+//! each other are welded, and neither slide nor part freely. There is no contact between them yet.
 
 use super::arguments::{Grows, array3, handle_out, initialise, optional_out, out, read_struct};
 use super::cells::{Change, Steps, WorldCell};
@@ -53,7 +56,9 @@ pub struct lahar_world_options {
     pub cfl: f64,
     /// Gravity [m/s^2], shape [3]; default 0.
     pub gravity: [f64; 3],
-    /// Local non-viscous damping [-], in [0, 1); default 0.
+    /// Local non-viscous damping alpha [-], in [0, 1); default 0. For statics only: it takes the
+    /// part alpha of every acceleration along the velocity, so that a body in free fall falls with
+    /// (1 - alpha) g.
     pub damping: f64,
     /// Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     pub box_min: [f64; 3],
@@ -221,7 +226,8 @@ pub unsafe extern "C" fn lahar_world_set_gravity(
     })
 }
 
-/// Sets the local non-viscous damping from the next step on.
+/// Sets the local non-viscous damping from the next step on. It slows all motion, free fall too:
+/// set it back to 0 before dynamics.
 ///
 /// `damping`: [-], in [0, 1).
 /// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,

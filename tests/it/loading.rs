@@ -19,6 +19,31 @@ fn refusal(path: &str) -> Error {
 }
 
 #[test]
+fn a_loaded_plugin_is_a_line_of_the_log_at_level_information() {
+    let lines = Arc::new(Mutex::new(Vec::new()));
+    for (most, expected) in [(1, 0), (2, 1)] {
+        let context = context();
+        let sink = Arc::clone(&lines);
+        context.set_log(
+            Some(Arc::new(move |l, t| sink.lock().unwrap().push((l, t.to_string())))),
+            most,
+        );
+        let path = plugin_path("newtonian");
+        // Found again, it is not told again.
+        for _ in 0..2 {
+            context.load_plugin(&path).expect("a plugin");
+        }
+        context.flush_log();
+        let lines = std::mem::take(&mut *lines.lock().unwrap());
+        assert_eq!(lines.len(), expected, "{lines:?}");
+        for (level, text) in lines {
+            let parts = ["org.lahar.newtonian ", path.as_str(), ": newtonian, tait_water"];
+            assert!(level == 2 && parts.iter().all(|p| text.contains(p)), "{level} {text}");
+        }
+    }
+}
+
+#[test]
 fn a_bare_name_is_looked_for_in_the_plugin_path_and_nowhere_else() {
     let folder = target_folder();
     let path = format!(".::{}", folder.display());
