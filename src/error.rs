@@ -12,7 +12,7 @@ choices! {
     pub enum Status: "status" {
         /// Done.
         Ok = 0, "ok", LAHAR_OK;
-        /// A pointer that must not be NULL is NULL.
+        /// A pointer that must not be NULL is NULL, or a pointer is not aligned for its type.
         NullArgument = 1, "null_argument", LAHAR_ERROR_NULL_ARGUMENT;
         /// `struct_size` is not one that this library knows, or the unknown tail is not zero.
         StructSize = 2, "struct_size", LAHAR_ERROR_STRUCT_SIZE;

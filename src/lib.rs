@@ -21,7 +21,8 @@ pub mod boundary;
 pub mod choice;
 pub mod context;
 pub mod error;
-mod ffi;
+#[doc(hidden)]
+pub mod ffi;
 mod log;
 pub mod material;
 pub mod memory;

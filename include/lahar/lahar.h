@@ -4,8 +4,9 @@
  *
  * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
  * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
- * a text that says what was expected, what was received and what to do. No function prints, exits or
- * aborts.
+ * a text that says what was expected, what was received and what to do. Each function lists the statuses
+ * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar. No function prints,
+ * exits or aborts.
  *
  * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
  * object first set the handle to NULL, and to the object only if they succeed. Functions that free
@@ -58,7 +59,7 @@ struct lahar_host_api;
 // Done.
 #define LAHAR_OK 0
 
-// A pointer that must not be NULL is NULL.
+// A pointer that must not be NULL is NULL, or a pointer is not aligned for its type.
 #define LAHAR_ERROR_NULL_ARGUMENT 1
 
 // `struct_size` is not one that this library knows, or the unknown tail is not zero.
@@ -263,8 +264,8 @@ typedef struct lahar_plugin_info {
 // how.
 //
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the
-// variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE (LAHAR_CAPSULES, see
-// lahar_context_set_capsule_folder).
+// variables), LAHAR_ERROR_FILE (LAHAR_CAPSULES, see lahar_context_set_capsule_folder),
+// LAHAR_ERROR_THREADS.
 // Thread: any
 lahar_status lahar_context_create(int32_t threads, lahar_context **context);
 
@@ -309,7 +310,7 @@ lahar_status lahar_context_threads_used(const lahar_context *context, int32_t *t
 // `user`: passed to the callback on every thread that calls functions of this context; lahar does
 // not follow it.
 // `max_level`: the most detailed level to be passed on, one of LAHAR_LOG_*.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (the level).
 // Thread: any
 lahar_status lahar_context_set_log(lahar_context *context,
                                    lahar_log_callback callback,
@@ -329,8 +330,9 @@ void lahar_log_stderr(int32_t level, const char *message, void *user);
 // but contains an Abaqus UMAT or VUMAT is accepted too if the plugin lahar_umat is found by its
 // name.
 // `plugin`: gets its index in the context; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
-// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
+// LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
+// LAHAR_ERROR_PLUGIN_REFUSED.
 // Thread: any
 lahar_status lahar_context_load_plugin(lahar_context *context,
                                        const char *name_or_path,
@@ -357,8 +359,8 @@ lahar_status lahar_context_register_plugin(lahar_context *context,
 //
 // `folder`: an existing folder; NULL or "": no capsules. A new context has the folder of the
 // environment variable LAHAR_CAPSULES.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (the folder does not exist;
-// nothing has changed).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
+// LAHAR_ERROR_FILE (the folder does not exist; nothing has changed).
 // Thread: any
 lahar_status lahar_context_set_capsule_folder(lahar_context *context, const char *folder);
 
@@ -373,7 +375,7 @@ lahar_status lahar_context_plugin_count(const lahar_context *context, int64_t *p
 //
 // `plugin`: 0 to lahar_context_plugin_count - 1.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the index).
 // Thread: any
 lahar_status lahar_context_plugin_info(const lahar_context *context,
                                        int64_t plugin,
@@ -409,22 +411,33 @@ typedef struct lahar_error_info {
 // `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0,
 // to ask for the size.
 // `needed`: gets the size of the text with its NUL; may be NULL.
-// Errors: LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated), LAHAR_ERROR_NULL_ARGUMENT,
-// LAHAR_ERROR_INVALID_ARGUMENT (negative capacity). None of them changes the last error.
+//
+// Errors of this function do not change the last error.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a negative capacity),
+// LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated).
 // Thread: any
 lahar_status lahar_last_error_message(char *buffer, int64_t capacity, int64_t *needed);
 
 // The last error of the calling thread, for programs.
 //
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE. None of them changes the last error.
+//
+// Errors of this function do not change the last error.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 // Thread: any
 lahar_status lahar_last_error_info(lahar_error_info *info);
 
 // Text of the last error of any call on this context, its worlds, materials and views, from any
 // thread.
 //
-// `buffer`, `capacity`, `needed`, errors: as in lahar_last_error_message.
+// `buffer`, `capacity`, `needed`: as in lahar_last_error_message.
+//
+// Errors of this function do not change the last error.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a negative capacity),
+// LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated).
 // Thread: any
 lahar_status lahar_context_error_message(const lahar_context *context,
                                          char *buffer,
@@ -526,7 +539,7 @@ lahar_status lahar_context_model_count(const lahar_context *context, int64_t *mo
 //
 // `model`: 0 to lahar_context_model_count - 1, in the order of loading.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the index).
 // Thread: any
 lahar_status lahar_context_model_info(const lahar_context *context,
                                       int64_t model,
@@ -536,7 +549,8 @@ lahar_status lahar_context_model_info(const lahar_context *context,
 //
 // `name`: NUL-terminated, UTF-8.
 // `model`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
+// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_context_find_model(const lahar_context *context, const char *name, int64_t *model);
 
@@ -544,8 +558,7 @@ lahar_status lahar_context_find_model(const lahar_context *context, const char *
 //
 // `model`: index of the model. `parameter`: 0 to `parameter_count` - 1 of lahar_model_info.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
-// index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
 // Thread: any
 lahar_status lahar_context_model_parameter(const lahar_context *context,
                                            int64_t model,
@@ -556,8 +569,7 @@ lahar_status lahar_context_model_parameter(const lahar_context *context,
 //
 // `model`: index of the model. `state`: 0 to `state_count` - 1 of lahar_model_info.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
-// index).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either index).
 // Thread: any
 lahar_status lahar_context_model_state(const lahar_context *context,
                                        int64_t model,
@@ -581,9 +593,10 @@ typedef struct lahar_material lahar_material;
 // units; NULL is allowed if `count` is 0.
 // `material`: set to the new handle, or to NULL on failure; the host frees it with
 // lahar_material_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `count`; a parameter that is given twice or not finite), LAHAR_ERROR_UNKNOWN_NAME (the message
 // names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
-// LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: any
 lahar_status lahar_material_create(lahar_context *context,
                                    const char *model,
@@ -599,7 +612,8 @@ void lahar_material_free(lahar_material *material);
 // Value of a parameter, given or default.
 //
 // `value`: gets the value, in the unit of lahar_parameter_info.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
+// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_material_value(const lahar_material *material,
                                   const char *parameter,
@@ -764,9 +778,9 @@ lahar_status lahar_world_options_init(lahar_world_options *options, int64_t size
 //
 // `options`: copied.
 // `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-// LAHAR_ERROR_OUT_OF_MEMORY (a static grid), LAHAR_ERROR_UNSUPPORTED (options that cannot be
-// combined; the message names the nearest ones that can).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (the
+// message names the option), LAHAR_ERROR_UNSUPPORTED (options that cannot be combined; the message
+// names the nearest ones that can), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: any
 lahar_status lahar_world_create(lahar_context *context,
                                 const lahar_world_options *options,
@@ -780,8 +794,8 @@ void lahar_world_free(lahar_world *world);
 // lahar_world_set_gravity_table.
 //
 // `gravity`: [m/s^2], shape [3], finite.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (not finite), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_UNSUPPORTED (radial, in axial symmetry), LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_world_set_gravity(lahar_world *world, const double gravity[3]);
 
@@ -797,28 +811,43 @@ lahar_status lahar_world_set_damping(lahar_world *world, double damping);
 // One step of the given length.
 //
 // `dt`: [s], > 0 and not above lahar_world_stable_dt.
-// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, also if it is
-// so small that time + dt equals time), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in
-// `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an
-// invalid value), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too
-// far away, or beyond the axis of symmetry; the world cannot step until the host writes other
-// positions or removes the body), LAHAR_ERROR_THREADS (the process was forked after the threads of
-// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
-// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only
-// with the option `retries`: a material failed or asks for a smaller step; its length is in
-// `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
-// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE
-// (with `retries` neither, unless a model fails as a whole), LAHAR_ERROR_PLUGIN_BROKEN,
-// LAHAR_ERROR_PANIC; lahar_last_error_info gives the body, the particle, the step and the time.
+//
+// If an error poisons the world, lahar_last_error_info gives the body, the particle, the step and
+// the time.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, also if it is so small that
+// time + dt equals time), LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in `suggested_dt` of lahar_last_error_info),
+// LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an invalid value), LAHAR_ERROR_OUTSIDE_GRID (a
+// particle is outside the box of a static grid, too far away, or beyond the axis of symmetry; the
+// world cannot step until the host writes other positions or removes the body),
+// LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material failed or asks for a smaller
+// step; its length is in `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_MATERIAL_REFUSED (a
+// material gives no wave speed, or would forget the stress that was given, see lahar_body_write),
+// LAHAR_ERROR_THREADS (the process was forked after the threads of the context had been started),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world is poisoned; with `retries`
+// only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world is poisoned; not with
+// `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is poisoned if that is
+// found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_step(lahar_world *world, double dt);
 
 // One step of the stable length.
 //
 // `dt`: gets the length of the step [s]; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite,
-// or so small that time + dt equals time.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (the stable step is infinite, or
+// so small that time + dt equals time), LAHAR_ERROR_VIEW_OPEN (a write view is open),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an invalid value),
+// LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too far away, or beyond
+// the axis of symmetry; the world cannot step until the host writes other positions or removes the
+// body), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material failed or asks for a
+// smaller step; its length is in `suggested_dt` of lahar_last_error_info),
+// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed, or would forget the stress that was
+// given, see lahar_body_write), LAHAR_ERROR_THREADS (the process was forked after the threads of
+// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world
+// is poisoned; with `retries` only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world
+// is poisoned; not with `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is
+// poisoned if that is found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
 
@@ -830,9 +859,22 @@ lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
 // reason is no error.
 // `steps_done`: gets the number of committed steps, also if a step fails; may be NULL.
 // `time`: gets the time that was reached [s], also if a step fails; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or in
-// the past, if `max_steps` is negative, or if the stable step becomes so small that time + dt
-// equals time. A positive status means that no partial step was committed.
+//
+// A positive status means that no partial step was committed.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`until` is not finite or in the
+// past; `max_steps` is negative; the stable step becomes so small that time + dt equals time),
+// LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY, LAHAR_ERROR_NON_FINITE_INPUT (the
+// host wrote an invalid value), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static
+// grid, too far away, or beyond the axis of symmetry; the world cannot step until the host writes
+// other positions or removes the body), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a
+// material failed or asks for a smaller step; its length is in `suggested_dt` of
+// lahar_last_error_info), LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed, or would
+// forget the stress that was given, see lahar_body_write), LAHAR_ERROR_THREADS (the process was
+// forked after the threads of the context had been started), LAHAR_ERROR_OUT_OF_MEMORY,
+// LAHAR_ERROR_MATERIAL_FAILED (the world is poisoned; with `retries` only if a model fails as a
+// whole), LAHAR_ERROR_NON_FINITE (the world is poisoned; not with `retries`), LAHAR_ERROR_POISONED,
+// LAHAR_ERROR_PLUGIN_BROKEN (the world is poisoned if that is found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_advance(lahar_world *world,
                                  double until,
@@ -848,7 +890,8 @@ lahar_status lahar_world_advance(lahar_world *world,
 // the spacing, D the dimension, nu the kinematic viscosity. Of gravity by a table the largest
 // value in the step is used. A prescribed velocity V adds the condition |V| dt <= cfl h.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material
-// gives no wave speed).
+// gives no wave speed, or would forget the stress that was given, see lahar_body_write),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_stable_dt(const lahar_world *world, double *dt);
 
@@ -959,9 +1002,10 @@ lahar_status lahar_fill_init(lahar_fill *fill, int64_t size);
 //
 // `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 // `body`: gets the id of the new body; must not be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
-// value that is not finite, not positive or too far away; strides), LAHAR_ERROR_OUT_OF_MEMORY,
-// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a value
+// that is not finite, not positive or too far away; counts and strides), LAHAR_ERROR_VIEW_OPEN (any
+// view is open), LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (the model refuses the stress),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing has changed).
 // Thread: owner
 lahar_status lahar_body_add_particles(lahar_world *world,
                                       const lahar_material *material,
@@ -974,7 +1018,10 @@ lahar_status lahar_body_add_particles(lahar_world *world,
 // `particles_per_cell` along each axis.
 // `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be
 // NULL.
-// Errors: as lahar_body_add_particles.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a value
+// that is not finite, not positive or too far away), LAHAR_ERROR_VIEW_OPEN (any view is open),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (the model refuses the stress),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing has changed).
 // Thread: owner
 lahar_status lahar_body_add_box(lahar_world *world,
                                 const lahar_material *material,
@@ -989,7 +1036,10 @@ lahar_status lahar_body_add_box(lahar_world *world,
 // `fill`: density or mass, velocity, stress. With `density` the mass may be 10 % off if the
 // radius is one spacing (see lahar_fill); give `mass` for an exact one.
 // `body`: gets the id of the new body; must not be NULL.
-// Errors: as lahar_body_add_particles.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a value
+// that is not finite, not positive or too far away), LAHAR_ERROR_VIEW_OPEN (any view is open),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (the model refuses the stress),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing has changed).
 // Thread: owner
 lahar_status lahar_body_add_sphere(lahar_world *world,
                                    const lahar_material *material,
@@ -1005,7 +1055,11 @@ lahar_status lahar_body_add_sphere(lahar_world *world,
 // `fill`: density or mass, velocity, stress. With `density` the mass is approximate (see
 // lahar_fill); give `mass` for an exact one.
 // `body`: gets the id of the new body; must not be NULL.
-// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a value
+// that is not finite, not positive or too far away; no simple polygon), LAHAR_ERROR_VIEW_OPEN (any
+// view is open), LAHAR_ERROR_BUSY, LAHAR_ERROR_UNSUPPORTED (three dimensions),
+// LAHAR_ERROR_MATERIAL_REFUSED (the model refuses the stress), LAHAR_ERROR_OUT_OF_MEMORY,
+// LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing has changed).
 // Thread: owner
 lahar_status lahar_body_add_polygon(lahar_world *world,
                                     const lahar_material *material,
@@ -1016,8 +1070,8 @@ lahar_status lahar_body_add_polygon(lahar_world *world,
 
 // Removes a body. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN,
-// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_VIEW_OPEN (any
+// view is open), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_remove(lahar_world *world, int64_t body);
 
@@ -1029,8 +1083,9 @@ lahar_status lahar_body_remove(lahar_world *world, int64_t body);
 // step.
 //
 // `on`: 1 or 0.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT,
-// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`on`), LAHAR_ERROR_NOT_FOUND
+// (the body), LAHAR_ERROR_VIEW_OPEN (any view is open), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_set_f_bar(lahar_world *world, int64_t body, int32_t on);
 
@@ -1044,14 +1099,14 @@ lahar_status lahar_world_body_count(const lahar_world *world, int64_t *bodies);
 //
 // `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 // `count`: gets the number of bodies.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a negative capacity),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, the array is not touched).
 // Thread: callback-ok
 lahar_status lahar_world_bodies(const lahar_world *world, int64_t capacity, int64_t *ids, int64_t *count);
 
 // Number of particles of a body.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_particle_count(const lahar_world *world, int64_t body, int64_t *particles);
 
@@ -1082,7 +1137,7 @@ typedef struct lahar_field_info {
 
 // Number of fields of a body.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_field_count(const lahar_world *world, int64_t body, int64_t *fields);
 
@@ -1090,8 +1145,8 @@ lahar_status lahar_body_field_count(const lahar_world *world, int64_t body, int6
 //
 // `field`: 0 to lahar_body_field_count - 1.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or
-// index), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body or
+// the index), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_field_info(const lahar_world *world,
                                    int64_t body,
@@ -1101,8 +1156,9 @@ lahar_status lahar_body_field_info(const lahar_world *world,
 // Index of the field of this name.
 //
 // `field`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
-// message names the closest one), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
+// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND (the body),
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_find_field(const lahar_world *world, int64_t body, const char *name, int64_t *field);
 
@@ -1112,9 +1168,9 @@ lahar_status lahar_body_find_field(const lahar_world *world, int64_t body, const
 // `values`: component c of particle k is written to values[c * component_stride + k *
 // point_stride], in the unit of the field. If both strides are 0, the array is interleaved, shape
 // [count, components].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
-// message names the closest one), LAHAR_ERROR_BUFFER_TOO_SMALL (count),
-// LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `count`, strides), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+// LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_BUFFER_TOO_SMALL (`count`).
 // Thread: callback-ok
 lahar_status lahar_body_read(const lahar_world *world,
                              int64_t body,
@@ -1138,8 +1194,10 @@ lahar_status lahar_body_read(const lahar_world *world,
 // The viscous stress of a body that moves is not checked.
 //
 // `count`, `values`, strides: as in lahar_body_read.
-// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
-// LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `count`, strides, a value that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names the
+// closest one), LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY,
+// LAHAR_ERROR_BUFFER_TOO_SMALL (`count`), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_write(lahar_world *world,
                               int64_t body,
@@ -1155,11 +1213,12 @@ lahar_status lahar_body_write(lahar_world *world,
 //
 // `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 // `count`: gets the number of particles.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative
-// capacity), LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched),
-// LAHAR_ERROR_BUSY; if the particles have to be mapped also LAHAR_ERROR_VIEW_OPEN (a write view is
-// open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see
-// lahar_world_step).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a negative capacity),
+// LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have
+// to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, the
+// array is not touched), LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step, if particles have to be
+// mapped), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_body_ids(const lahar_world *world,
                             int64_t body,
@@ -1211,11 +1270,12 @@ typedef struct lahar_view_info {
 //
 // `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
 // `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND
-// (body), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_READ_ONLY,
-// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED (write access); if the particles have to be mapped also
-// LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
-// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `access`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND
+// (the body), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have to be mapped to the
+// grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step,
+// if particles have to be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have
+// to be mapped), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED (write access).
 // Thread: owner
 lahar_status lahar_body_view(lahar_world *world,
                              int64_t body,
@@ -1226,9 +1286,8 @@ lahar_status lahar_body_view(lahar_world *world,
 // Address and layout of the data of a view.
 //
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (of a read
-// view: particles may have been reordered since it was opened),
-// LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (a read view:
+// particles may have been reordered since it was opened), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_view_data(const lahar_view *view, lahar_view_info *info);
 
@@ -1288,22 +1347,23 @@ lahar_status lahar_wall_init(lahar_wall *wall, int64_t size);
 //
 // `wall`: copied. `id`: gets the id of the wall; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: less than half a cell from a wall that faces it),
-// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: less than half a cell from a
+// wall that faces it), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_wall_add(lahar_world *world, const lahar_wall *wall, int64_t *id);
 
 // Removes a wall. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_wall_remove(lahar_world *world, int64_t id);
 
 // Force of a wall on the material in the last step; 0 before the first step with the wall.
 //
 // `force`: written [N], shape [3].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_wall_reaction(const lahar_world *world, int64_t id, double force[3]);
 
@@ -1375,7 +1435,7 @@ lahar_status lahar_prescribed_velocity_init(lahar_prescribed_velocity *condition
 // `condition`: copied, with its table. `id`: gets the id; may be NULL.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT
 // (components; a box that is not set or inverted; a velocity that is not finite; a row of the
-// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_prescribed_velocity_add(lahar_world *world,
                                            const lahar_prescribed_velocity *condition,
@@ -1383,8 +1443,8 @@ lahar_status lahar_prescribed_velocity_add(lahar_world *world,
 
 // Removes a prescribed velocity. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_prescribed_velocity_remove(lahar_world *world, int64_t id);
 
@@ -1392,7 +1452,8 @@ lahar_status lahar_prescribed_velocity_remove(lahar_world *world, int64_t id);
 // divided by the time step; 0 before the first step with it.
 //
 // `force`: written [N], shape [3].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_prescribed_velocity_reaction(const lahar_world *world, int64_t id, double force[3]);
 
@@ -1446,18 +1507,18 @@ lahar_status lahar_traction_init(lahar_traction *traction, int64_t size);
 // Adds a traction. It is removed together with its body.
 //
 // `traction`: copied, with its table. `id`: gets the id; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
-// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle,
-// or with particles behind one another along the normal; particles whose edge lengths are not
-// known; a traction that is not finite; a row of the table), LAHAR_ERROR_BUSY,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (the
+// normal; a box that is not set, inverted, without a particle, or with particles behind one another
+// along the normal; particles whose edge lengths are not known; a traction that is not finite; a
+// row of the table), LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUT_OF_MEMORY,
 // LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_traction_add(lahar_world *world, const lahar_traction *traction, int64_t *id);
 
 // Removes a traction. Its id is not used again.
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_traction_remove(lahar_world *world, int64_t id);
 
@@ -1467,7 +1528,8 @@ lahar_status lahar_traction_remove(lahar_world *world, int64_t id);
 // `area`: gets the area of the loaded surface [m^2]; may be NULL.
 // `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first step
 // with the traction. Queries of the grid do not change it.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no condition of this kind has the id),
+// LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_traction_force(const lahar_world *world,
                                   int64_t id,
@@ -1554,6 +1616,7 @@ typedef struct lahar_settle_result {
 // two dimensions values[3 * row + 2] is ignored.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not
 // increase, a value that is not finite; the message names the row), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_UNSUPPORTED (radial, in axial symmetry), LAHAR_ERROR_OUT_OF_MEMORY,
 // LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_world_set_gravity_table(lahar_world *world,
@@ -1568,11 +1631,13 @@ lahar_status lahar_world_set_gravity_table(lahar_world *world,
 // write views of the world are freed. Costs less than a step.
 //
 // `equilibrium`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
-// model has no wave speed for the present state), LAHAR_ERROR_BUSY. If the grid has to be mapped,
-// also LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
-// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step), and LAHAR_ERROR_BUSY
-// also while another thread runs a query.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_OPEN (a write view
+// is open, and particles have to be mapped to the grid), LAHAR_ERROR_BUSY (also while another
+// thread runs a query, if particles have to be mapped), LAHAR_ERROR_OUTSIDE_GRID (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_MATERIAL_REFUSED (a material gives
+// no wave speed, or would forget the stress that was given, see lahar_body_write),
+// LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_equilibrium(const lahar_world *world, lahar_equilibrium *equilibrium);
 
@@ -1591,9 +1656,23 @@ lahar_status lahar_settle_criteria_init(lahar_settle_criteria *criteria, int64_t
 //
 // `criteria`: copied; NULL: the defaults.
 // `result`: written, also if a step fails; the host has set `struct_size`; may be NULL.
-// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not
-// positive, and if both the stable step and `until` are infinite. A positive status means that no
-// partial step was committed.
+//
+// A positive status means that no partial step was committed.
+//
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT
+// (criteria that are not positive; both the stable step and `until` are infinite; the stable step
+// becomes so small that time + dt equals time), LAHAR_ERROR_VIEW_OPEN (a write view is open),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an invalid value),
+// LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too far away, or beyond
+// the axis of symmetry; the world cannot step until the host writes other positions or removes the
+// body), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material failed or asks for a
+// smaller step; its length is in `suggested_dt` of lahar_last_error_info),
+// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed, or would forget the stress that was
+// given, see lahar_body_write), LAHAR_ERROR_THREADS (the process was forked after the threads of
+// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world
+// is poisoned; with `retries` only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world
+// is poisoned; not with `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is
+// poisoned if that is found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_settle(lahar_world *world,
                                 const lahar_settle_criteria *criteria,
@@ -1611,11 +1690,12 @@ lahar_status lahar_world_settle(lahar_world *world,
 // `unit_weight`: [N/m^3], > 0; or 0: mass divided by volume of the whole body, times gravity at
 // the present time.
 // `k0`: ratio of horizontal to vertical stress [-], >= 0.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
-// is 0 at the present time or not along an axis; a value out of its range; the model refuses the
-// stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
-// gradient), LAHAR_ERROR_MATERIAL_REFUSED (the model would forget the stress: a fluid takes k0 = 1
-// alone, a gas what its energy gives), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (gravity is 0 at the present time
+// or not along an axis; a value out of its range; the model refuses the stress),
+// LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_UNSUPPORTED (the stress of the
+// model follows from the deformation gradient), LAHAR_ERROR_MATERIAL_REFUSED (the model would
+// forget the stress: a fluid takes k0 = 1 alone, a gas what its energy gives),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing has changed).
 // Thread: owner
 lahar_status lahar_body_set_k0_stress(lahar_world *world,
                                       int64_t body,
@@ -1627,10 +1707,11 @@ lahar_status lahar_body_set_k0_stress(lahar_world *world,
 // body was added: for instance the volume ratio of a fluid from its pressure. The old values of
 // the state variables are lost. Call it after writing the field "stress".
 //
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
-// model refuses the stress; the old state stays), LAHAR_ERROR_MATERIAL_REFUSED (the model would
-// forget the stress, see lahar_body_write; the old state stays), LAHAR_ERROR_BUSY,
-// LAHAR_ERROR_POISONED.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (the model refuses the stress;
+// the old state stays), LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_MATERIAL_REFUSED (the model would forget the stress, see lahar_body_write; the old
+// state stays), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (nothing
+// has changed).
 // Thread: owner
 lahar_status lahar_body_init_state(lahar_world *world, int64_t body);
 
@@ -1674,7 +1755,10 @@ typedef struct lahar_grid_statistics {
 // Statistics of the grid.
 //
 // `statistics`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_OPEN (a write view
+// is open, and particles have to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID
+// (as in lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_stats(const lahar_world *world, lahar_grid_statistics *statistics);
 
@@ -1685,8 +1769,12 @@ lahar_status lahar_grid_stats(const lahar_world *world, lahar_grid_statistics *s
 // `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 to
 // get only the count.
 // `count`: gets the number of active blocks.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a negative capacity),
+// LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have to be mapped to the grid),
+// LAHAR_ERROR_BUSY, LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, the array is not touched),
+// LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_blocks(const lahar_world *world,
                                int64_t capacity,
@@ -1700,14 +1788,21 @@ lahar_status lahar_grid_blocks(const lahar_world *world,
 // `index`: shape [3]; the node is at origin + index * spacing [m]. In two dimensions index[2] is
 // ignored.
 // `node`: gets the number, or -1 if the node is not active.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles
+// have to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step,
+// if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_find_node(const lahar_world *world, const int64_t index[3], int64_t *node);
 
 // Integer index of the node with a number: the inverse of lahar_grid_find_node.
 //
 // `node`: number of the node. `index`: written, shape [3]; in two dimensions index[2] is 0.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_VIEW_OPEN (a
+// write view is open, and particles have to be mapped to the grid), LAHAR_ERROR_BUSY,
+// LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_node_index(const lahar_world *world, int64_t node, int64_t index[3]);
 
@@ -1722,7 +1817,7 @@ lahar_status lahar_grid_field_count(const lahar_world *world, int64_t *fields);
 //
 // `field`: 0 to lahar_grid_field_count - 1.
 // `info`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index),
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the index),
 // LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_grid_field_info(const lahar_world *world, int64_t field, lahar_field_info *info);
@@ -1732,9 +1827,12 @@ lahar_status lahar_grid_field_info(const lahar_world *world, int64_t field, laha
 // `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and
 // `count` is `active_nodes` of lahar_grid_statistics.
 // `values`: written, shape [count, components], in the unit of the field.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
-// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT
-// (count), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `count`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND (a
+// node, before anything is written), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles
+// have to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step,
+// if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_read(const lahar_world *world,
                              const char *field,
@@ -1749,8 +1847,12 @@ lahar_status lahar_grid_read(const lahar_world *world,
 // `values`: written, shape [count, components], in the unit of the field; zeros where there is no
 // material.
 // `inside`: written, shape [count]: 1 where there is material, else 0; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
-// LAHAR_ERROR_INVALID_ARGUMENT (count, a coordinate that is not finite), LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
+// `count`; a coordinate that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names the
+// closest one), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have to be mapped to the
+// grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step, if particles have to
+// be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_sample(const lahar_world *world,
                                const char *field,
@@ -1795,7 +1897,7 @@ typedef struct lahar_totals {
 //
 // `body`: an id, or LAHAR_ALL_BODIES.
 // `totals`: written; the host has set `struct_size`.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
 // LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_totals *totals);
@@ -1804,8 +1906,9 @@ lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_to
 //
 // `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
 // then renamed, so that an existing file is replaced as a whole or not at all.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or
-// does not end in `.vtp`), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8; a path
+// that is empty or does not end in `.vtp`), LAHAR_ERROR_BUSY, LAHAR_ERROR_FILE,
+// LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_write_vtp(const lahar_world *world, const char *path);
 

@@ -21,7 +21,8 @@ fn check<T>(pointer: *const T, name: &str) -> Result<()> {
     }
     if !pointer.is_aligned() {
         let bytes = align_of::<T>();
-        return Err(Error::invalid(format!("`{name}` is not aligned to {bytes} bytes")));
+        let text = format!("`{name}` is not aligned to {bytes} bytes; expected a valid pointer");
+        return Err(Error::new(Status::NullArgument, text));
     }
     Ok(())
 }

@@ -113,7 +113,6 @@ unsafe impl Grows for lahar_fill {
 /// Fills the struct with its defaults: no particles, no arrays.
 ///
 /// `size`: sizeof(lahar_particles).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_particles_init(
@@ -129,7 +128,6 @@ pub unsafe extern "C" fn lahar_particles_init(
 /// Fills the struct with its defaults.
 ///
 /// `size`: sizeof(lahar_fill).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_fill_init(fill: *mut lahar_fill, size: i64) -> lahar_status {
@@ -151,9 +149,6 @@ pub unsafe extern "C" fn lahar_fill_init(fill: *mut lahar_fill, size: i64) -> la
 ///
 /// `particles`: read during the call only. The particles get the ids 0 to count - 1 in this order.
 /// `body`: gets the id of the new body; must not be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
-/// value that is not finite, not positive or too far away; strides), LAHAR_ERROR_OUT_OF_MEMORY,
-/// LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_add_particles(
@@ -226,7 +221,6 @@ unsafe fn strided<'a>(
 /// `particles_per_cell` along each axis.
 /// `fill`: density or mass, velocity, stress. `body`: gets the id of the new body; must not be
 /// NULL.
-/// Errors: as lahar_body_add_particles.
 /// Thread: owner
 ///
 /// cbindgen:ptrs-as-arrays=[[min; 3], [max; 3]]
@@ -256,7 +250,6 @@ pub unsafe extern "C" fn lahar_body_add_box(
 /// `fill`: density or mass, velocity, stress. With `density` the mass may be 10 % off if the
 /// radius is one spacing (see lahar_fill); give `mass` for an exact one.
 /// `body`: gets the id of the new body; must not be NULL.
-/// Errors: as lahar_body_add_particles.
 /// Thread: owner
 ///
 /// cbindgen:ptrs-as-arrays=[[center; 3]]
@@ -285,7 +278,6 @@ pub unsafe extern "C" fn lahar_body_add_sphere(
 /// `fill`: density or mass, velocity, stress. With `density` the mass is approximate (see
 /// lahar_fill); give `mass` for an exact one.
 /// `body`: gets the id of the new body; must not be NULL.
-/// Errors: as lahar_body_add_particles; LAHAR_ERROR_UNSUPPORTED in three dimensions.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_add_polygon(
@@ -344,8 +336,6 @@ unsafe fn add_shape(
 
 /// Removes a body. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_VIEW_OPEN,
-/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_remove(world: *mut lahar_world, body: i64) -> lahar_status {
@@ -364,8 +354,6 @@ pub unsafe extern "C" fn lahar_body_remove(world: *mut lahar_world, body: i64) -
 /// step.
 ///
 /// `on`: 1 or 0.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT,
-/// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_VIEW_OPEN, LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_set_f_bar(
@@ -389,7 +377,6 @@ pub unsafe extern "C" fn lahar_body_set_f_bar(
 
 /// Number of bodies.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_body_count(
@@ -408,8 +395,6 @@ pub unsafe extern "C" fn lahar_world_body_count(
 ///
 /// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 /// `count`: gets the number of bodies.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-/// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_bodies(
@@ -429,7 +414,6 @@ pub unsafe extern "C" fn lahar_world_bodies(
 
 /// Number of particles of a body.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_particle_count(

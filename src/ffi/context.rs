@@ -79,9 +79,6 @@ unsafe impl Grows for lahar_plugin_info {
 /// instance by a write past its points, LAHAR_ERROR_PLUGIN_BROKEN is returned and the message says
 /// how.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the
-/// variables), LAHAR_ERROR_THREADS, LAHAR_ERROR_FILE (LAHAR_CAPSULES, see
-/// lahar_context_set_capsule_folder).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_create(
@@ -115,7 +112,6 @@ pub unsafe extern "C" fn lahar_context_free(context: *mut lahar_context) {
 /// Number of threads of the context.
 ///
 /// `threads`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_thread_count(
@@ -150,7 +146,6 @@ pub unsafe extern "C" fn lahar_context_simd(context: *const lahar_context) -> *c
 /// on one thread.
 ///
 /// `threads`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_threads_used(
@@ -190,7 +185,6 @@ impl User {
 /// `user`: passed to the callback on every thread that calls functions of this context; lahar does
 /// not follow it.
 /// `max_level`: the most detailed level to be passed on, one of LAHAR_LOG_*.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_INVALID_ARGUMENT (level).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_set_log(
@@ -245,8 +239,6 @@ pub unsafe extern "C" fn lahar_log_stderr(level: i32, message: *const c_char, us
 /// but contains an Abaqus UMAT or VUMAT is accepted too if the plugin lahar_umat is found by its
 /// name.
 /// `plugin`: gets its index in the context; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID,
-/// LAHAR_ERROR_PLUGIN_ABI, LAHAR_ERROR_PLUGIN_REFUSED.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_load_plugin(
@@ -276,8 +268,6 @@ pub unsafe extern "C" fn lahar_context_load_plugin(
 /// that it returns must not change until the process ends.
 /// `index`: gets its index in the context; may be NULL. `path` of lahar_plugin_info is its id in
 /// brackets.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
-/// LAHAR_ERROR_PLUGIN_REFUSED.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_register_plugin(
@@ -305,8 +295,6 @@ pub unsafe extern "C" fn lahar_context_register_plugin(
 ///
 /// `folder`: an existing folder; NULL or "": no capsules. A new context has the folder of the
 /// environment variable LAHAR_CAPSULES.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT (context), LAHAR_ERROR_FILE (the folder does not exist;
-/// nothing has changed).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_set_capsule_folder(
@@ -325,7 +313,6 @@ pub unsafe extern "C" fn lahar_context_set_capsule_folder(
 /// Number of plugins that are loaded into the context.
 ///
 /// `plugins`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_plugin_count(
@@ -344,7 +331,6 @@ pub unsafe extern "C" fn lahar_context_plugin_count(
 ///
 /// `plugin`: 0 to lahar_context_plugin_count - 1.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_plugin_info(

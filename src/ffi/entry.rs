@@ -6,6 +6,7 @@
 //! context, poisons the world after a panic, and delivers the log lines that were queued. By then
 //! every lock is released, so callbacks may call the library.
 
+use super::answers;
 use super::cells::{ContextCell, WorldCell};
 use super::status::lahar_status;
 use crate::error::{Error, Result, Status};
@@ -22,6 +23,9 @@ thread_local! {
     /// The error of the last call of this thread that failed.
     static LAST_ERROR: RefCell<Option<Error>> = const { RefCell::new(None) };
 }
+
+/// End of the message of an error that the function is not documented to return; tests look for it.
+const UNDOCUMENTED: &str = " (this status is not documented for this function: please report it)";
 
 /// The objects that a call works on. They live until the log is flushed, even if a callback frees
 /// the handle.
@@ -54,6 +58,9 @@ impl Scope {
             Ok(()) => Status::Ok,
             Err(mut error) => {
                 error.message = format!("{function}: {}", error.message);
+                if answers::is_unexpected(function, error.status) {
+                    error.message += UNDOCUMENTED;
+                }
                 self.record_error(error)
             }
         };
@@ -161,6 +168,16 @@ mod tests {
         assert!(message.starts_with("lahar_test: a defect of lahar was caught at "), "{message}");
         assert!(message.contains("number 7"), "{message}");
         assert_eq!(entry("lahar_test", |_| Ok(())), 0);
+    }
+
+    #[test]
+    fn an_answer_that_is_not_documented_is_marked() {
+        let refuse = |status| move |_: &mut Scope| Err(Error::new(status, "no"));
+        entry("lahar_version", refuse(Status::Busy));
+        let message = last_error().expect("a recorded error").message;
+        assert_eq!(message, format!("lahar_version: no{UNDOCUMENTED}"));
+        entry("lahar_version", refuse(Status::NullArgument));
+        assert_eq!(last_error().expect("a recorded error").message, "lahar_version: no");
     }
 
     #[test]

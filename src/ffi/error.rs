@@ -44,8 +44,9 @@ fn message(error: &Option<Error>) -> &str {
 /// `buffer`: `capacity` bytes, gets the text in UTF-8 with a NUL; may be NULL if `capacity` is 0,
 /// to ask for the size.
 /// `needed`: gets the size of the text with its NUL; may be NULL.
-/// Errors: LAHAR_ERROR_BUFFER_TOO_SMALL (the text is truncated), LAHAR_ERROR_NULL_ARGUMENT,
-/// LAHAR_ERROR_INVALID_ARGUMENT (negative capacity). None of them changes the last error.
+///
+/// Errors of this function do not change the last error.
+///
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_last_error_message(
@@ -64,7 +65,9 @@ pub unsafe extern "C" fn lahar_last_error_message(
 /// The last error of the calling thread, for programs.
 ///
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE. None of them changes the last error.
+///
+/// Errors of this function do not change the last error.
+///
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_last_error_info(info: *mut lahar_error_info) -> lahar_status {
@@ -88,7 +91,10 @@ pub unsafe extern "C" fn lahar_last_error_info(info: *mut lahar_error_info) -> l
 /// Text of the last error of any call on this context, its worlds, materials and views, from any
 /// thread.
 ///
-/// `buffer`, `capacity`, `needed`, errors: as in lahar_last_error_message.
+/// `buffer`, `capacity`, `needed`: as in lahar_last_error_message.
+///
+/// Errors of this function do not change the last error.
+///
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_error_message(

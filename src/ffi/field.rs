@@ -54,7 +54,6 @@ pub(super) fn field_info(field: &FieldInfo) -> lahar_field_info {
 
 /// Number of fields of a body.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_field_count(
@@ -74,8 +73,6 @@ pub unsafe extern "C" fn lahar_body_field_count(
 ///
 /// `field`: 0 to lahar_body_field_count - 1.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (body or
-/// index), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_field_info(
@@ -96,8 +93,6 @@ pub unsafe extern "C" fn lahar_body_field_info(
 /// Index of the field of this name.
 ///
 /// `field`: gets the index.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
-/// message names the closest one), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_find_field(
@@ -155,9 +150,6 @@ fn check_count(given: i64, particles: usize) -> Result<()> {
 /// `values`: component c of particle k is written to values[c * component_stride + k *
 /// point_stride], in the unit of the field. If both strides are 0, the array is interleaved, shape
 /// [count, components].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (body), LAHAR_ERROR_UNKNOWN_NAME (the
-/// message names the closest one), LAHAR_ERROR_BUFFER_TOO_SMALL (count),
-/// LAHAR_ERROR_INVALID_ARGUMENT (count, strides), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_read(
@@ -194,8 +186,6 @@ pub unsafe extern "C" fn lahar_body_read(
 /// The viscous stress of a body that moves is not checked.
 ///
 /// `count`, `values`, strides: as in lahar_body_read.
-/// Errors: as lahar_body_read, LAHAR_ERROR_INVALID_ARGUMENT also for a value that is not finite,
-/// LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_write(
@@ -223,11 +213,6 @@ pub unsafe extern "C" fn lahar_body_write(
 ///
 /// `capacity`, `ids`: room for so many ids; NULL and 0 to get only the count.
 /// `count`: gets the number of particles.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (negative
-/// capacity), LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `ids` is not touched),
-/// LAHAR_ERROR_BUSY; if the particles have to be mapped also LAHAR_ERROR_VIEW_OPEN (a write view is
-/// open), LAHAR_ERROR_OUTSIDE_GRID, LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see
-/// lahar_world_step).
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_ids(

@@ -55,7 +55,6 @@ unsafe impl Grows for lahar_grid_statistics {
 /// Statistics of the grid.
 ///
 /// `statistics`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_stats(
@@ -92,8 +91,6 @@ fn statistics_of(world: &World) -> lahar_grid_statistics {
 /// `capacity`, `coordinates`: room for so many blocks, shape [capacity, dimension]; NULL and 0 to
 /// get only the count.
 /// `count`: gets the number of active blocks.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (negative capacity),
-/// LAHAR_ERROR_BUFFER_TOO_SMALL (`count` is set, `coordinates` is not touched), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_blocks(
@@ -124,7 +121,6 @@ pub unsafe extern "C" fn lahar_grid_blocks(
 /// `index`: shape [3]; the node is at origin + index * spacing [m]. In two dimensions index[2] is
 /// ignored.
 /// `node`: gets the number, or -1 if the node is not active.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
 /// cbindgen:ptrs-as-arrays=[[index; 3]]
@@ -153,7 +149,6 @@ pub unsafe extern "C" fn lahar_grid_find_node(
 /// Integer index of the node with a number: the inverse of lahar_grid_find_node.
 ///
 /// `node`: number of the node. `index`: written, shape [3]; in two dimensions index[2] is 0.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND (no such node), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
 /// cbindgen:ptrs-as-arrays=[[index; 3]]
@@ -185,7 +180,6 @@ fn no_node(world: &World, node: i64) -> Error {
 /// Number of node fields.
 ///
 /// `fields`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_field_count(
@@ -204,8 +198,6 @@ pub unsafe extern "C" fn lahar_grid_field_count(
 ///
 /// `field`: 0 to lahar_grid_field_count - 1.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index),
-/// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_field_info(
@@ -227,9 +219,6 @@ pub unsafe extern "C" fn lahar_grid_field_info(
 /// `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and
 /// `count` is `active_nodes` of lahar_grid_statistics.
 /// `values`: written, shape [count, components], in the unit of the field.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
-/// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_INVALID_ARGUMENT
-/// (count), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_read(
@@ -296,8 +285,6 @@ fn node_field(world: &World, field: &str) -> Result<FieldInfo> {
 /// `values`: written, shape [count, components], in the unit of the field; zeros where there is no
 /// material.
 /// `inside`: written, shape [count]: 1 where there is material, else 0; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
-/// LAHAR_ERROR_INVALID_ARGUMENT (count, a coordinate that is not finite), LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_grid_sample(

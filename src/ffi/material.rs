@@ -25,9 +25,6 @@ pub struct lahar_material {
 /// units; NULL is allowed if `count` is 0.
 /// `material`: set to the new handle, or to NULL on failure; the host frees it with
 /// lahar_material_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (model or parameter; the message
-/// names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
-/// LAHAR_ERROR_INVALID_ARGUMENT (given twice, not finite).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_material_create(
@@ -82,7 +79,6 @@ pub unsafe extern "C" fn lahar_material_free(material: *mut lahar_material) {
 /// Value of a parameter, given or default.
 ///
 /// `value`: gets the value, in the unit of lahar_parameter_info.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_material_value(

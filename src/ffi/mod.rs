@@ -7,6 +7,7 @@
 #![allow(non_camel_case_types)] // the names are those of the C header
 #![allow(clippy::missing_safety_doc)] // the conventions at the top of lahar.h are the contract of every function
 
+pub mod answers;
 mod arguments;
 mod cells;
 mod entry;

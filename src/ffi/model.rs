@@ -115,7 +115,6 @@ unsafe impl Grows for lahar_state_info {
 /// Number of models of all loaded plugins.
 ///
 /// `models`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_count(
@@ -134,7 +133,6 @@ pub unsafe extern "C" fn lahar_context_model_count(
 ///
 /// `model`: 0 to lahar_context_model_count - 1, in the order of loading.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_info(
@@ -154,7 +152,6 @@ pub unsafe extern "C" fn lahar_context_model_info(
 ///
 /// `name`: NUL-terminated, UTF-8.
 /// `model`: gets the index.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_find_model(
@@ -177,8 +174,6 @@ pub unsafe extern "C" fn lahar_context_find_model(
 ///
 /// `model`: index of the model. `parameter`: 0 to `parameter_count` - 1 of lahar_model_info.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
-/// index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_parameter(
@@ -199,8 +194,6 @@ pub unsafe extern "C" fn lahar_context_model_parameter(
 ///
 /// `model`: index of the model. `state`: 0 to `state_count` - 1 of lahar_model_info.
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (either
-/// index).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_context_model_state(

@@ -49,8 +49,6 @@ unsafe impl Grows for lahar_totals {
 ///
 /// `body`: an id, or LAHAR_ALL_BODIES.
 /// `totals`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND,
-/// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_totals(
@@ -86,8 +84,6 @@ fn from_totals(totals: &Totals) -> lahar_totals {
 ///
 /// `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
 /// then renamed, so that an existing file is replaced as a whole or not at all.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`path` is empty, not UTF-8 or
-/// does not end in `.vtp`), LAHAR_ERROR_FILE, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_write_vtp(

@@ -60,7 +60,6 @@ unsafe impl Grows for lahar_prescribed_velocity {
 /// Fills the struct with its defaults.
 ///
 /// `size`: sizeof(lahar_prescribed_velocity).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_prescribed_velocity_init(
@@ -85,9 +84,6 @@ pub unsafe extern "C" fn lahar_prescribed_velocity_init(
 /// in a step.
 ///
 /// `condition`: copied, with its table. `id`: gets the id; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT
-/// (components; a box that is not set or inverted; a velocity that is not finite; a row of the
-/// table), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_prescribed_velocity_add(
@@ -125,8 +121,6 @@ unsafe fn to_condition(
 
 /// Removes a prescribed velocity. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_prescribed_velocity_remove(
@@ -144,7 +138,6 @@ pub unsafe extern "C" fn lahar_prescribed_velocity_remove(
 /// divided by the time step; 0 before the first step with it.
 ///
 /// `force`: written [N], shape [3].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
 /// cbindgen:ptrs-as-arrays=[[force; 3]]

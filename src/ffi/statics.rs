@@ -24,9 +24,6 @@ const _: () = assert!(LAHAR_STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS);
 /// `count`: number of rows, at least 1. `times`: [s], shape [count], increasing. `values`: [m/s^2],
 /// shape [count, 3]. The first row also holds before its time, the last row also after its time. In
 /// two dimensions values[3 * row + 2] is ignored.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (no rows, times that do not
-/// increase, a value that is not finite; the message names the row), LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_set_gravity_table(
@@ -102,11 +99,6 @@ fn from_equilibrium(e: &Equilibrium) -> lahar_equilibrium {
 /// write views of the world are freed. Costs less than a step.
 ///
 /// `equilibrium`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT (a
-/// model has no wave speed for the present state), LAHAR_ERROR_BUSY. If the grid has to be mapped,
-/// also LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
-/// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step), and LAHAR_ERROR_BUSY
-/// also while another thread runs a query.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_equilibrium(
@@ -150,7 +142,6 @@ unsafe impl Grows for lahar_settle_criteria {
 /// Fills the criteria with their defaults.
 ///
 /// `size`: sizeof(lahar_settle_criteria).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_settle_criteria_init(
@@ -204,9 +195,9 @@ unsafe impl Grows for lahar_settle_result {
 ///
 /// `criteria`: copied; NULL: the defaults.
 /// `result`: written, also if a step fails; the host has set `struct_size`; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also for criteria that are not
-/// positive, and if both the stable step and `until` are infinite. A positive status means that no
-/// partial step was committed.
+///
+/// A positive status means that no partial step was committed.
+///
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_settle(
@@ -275,11 +266,6 @@ fn to_criteria(given: &lahar_settle_criteria) -> Result<Criteria, Error> {
 /// `unit_weight`: [N/m^3], > 0; or 0: mass divided by volume of the whole body, times gravity at
 /// the present time.
 /// `k0`: ratio of horizontal to vertical stress [-], >= 0.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (gravity
-/// is 0 at the present time or not along an axis; a value out of its range; the model refuses the
-/// stress), LAHAR_ERROR_UNSUPPORTED (the stress of the model follows from the deformation
-/// gradient), LAHAR_ERROR_MATERIAL_REFUSED (the model would forget the stress: a fluid takes k0 = 1
-/// alone, a gas what its energy gives), LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_set_k0_stress(
@@ -301,10 +287,6 @@ pub unsafe extern "C" fn lahar_body_set_k0_stress(
 /// body was added: for instance the volume ratio of a fluid from its pressure. The old values of
 /// the state variables are lost. Call it after writing the field "stress".
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_INVALID_ARGUMENT (the
-/// model refuses the stress; the old state stays), LAHAR_ERROR_MATERIAL_REFUSED (the model would
-/// forget the stress, see lahar_body_write; the old state stays), LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_init_state(world: *mut lahar_world, body: i64) -> lahar_status {

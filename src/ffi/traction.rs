@@ -55,7 +55,6 @@ unsafe impl Grows for lahar_traction {
 /// Fills the struct with its defaults.
 ///
 /// `size`: sizeof(lahar_traction).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_traction_init(
@@ -82,11 +81,6 @@ pub unsafe extern "C" fn lahar_traction_init(
 /// Adds a traction. It is removed together with its body.
 ///
 /// `traction`: copied, with its table. `id`: gets the id; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_NOT_FOUND (the body),
-/// LAHAR_ERROR_INVALID_ARGUMENT (the normal; a box that is not set, inverted, without a particle,
-/// or with particles behind one another along the normal; particles whose edge lengths are not
-/// known; a traction that is not finite; a row of the table), LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_traction_add(
@@ -130,8 +124,6 @@ unsafe fn to_traction(cell: &WorldCell, given: &lahar_traction) -> Result<Tracti
 
 /// Removes a traction. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_traction_remove(world: *mut lahar_world, id: i64) -> lahar_status {
@@ -148,7 +140,6 @@ pub unsafe extern "C" fn lahar_traction_remove(world: *mut lahar_world, id: i64)
 /// `area`: gets the area of the loaded surface [m^2]; may be NULL.
 /// `force`: written, the force on the body in the last step [N], shape [3]; 0 before the first step
 /// with the traction. Queries of the grid do not change it.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
 /// cbindgen:ptrs-as-arrays=[[force; 3]]

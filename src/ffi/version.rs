@@ -27,7 +27,6 @@ const _: () = {
 /// Version of the library that is running.
 ///
 /// `major`, `minor`, `patch`: written; must not be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_version(

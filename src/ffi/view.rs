@@ -62,11 +62,6 @@ unsafe impl Grows for lahar_view_info {
 ///
 /// `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
 /// `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (access), LAHAR_ERROR_NOT_FOUND
-/// (body), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_READ_ONLY,
-/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED (write access); if the particles have to be mapped also
-/// LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_OUTSIDE_GRID,
-/// LAHAR_ERROR_OUT_OF_MEMORY and LAHAR_ERROR_THREADS (see lahar_world_step).
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_body_view(
@@ -125,9 +120,6 @@ fn open_write(cell: &Arc<WorldCell>, body: i64, field: &str) -> Result<lahar_vie
 /// Address and layout of the data of a view.
 ///
 /// `info`: written; the host has set `struct_size`.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_VIEW_STALE (of a read
-/// view: particles may have been reordered since it was opened),
-/// LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_view_data(

@@ -43,7 +43,6 @@ unsafe impl Grows for lahar_wall {
 /// Fills the struct with its defaults.
 ///
 /// `size`: sizeof(lahar_wall).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> lahar_status {
@@ -64,9 +63,6 @@ pub unsafe extern "C" fn lahar_wall_init(wall: *mut lahar_wall, size: i64) -> la
 /// Adds a wall.
 ///
 /// `wall`: copied. `id`: gets the id of the wall; may be NULL.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-/// LAHAR_ERROR_UNSUPPORTED (LAHAR_WALLS_MODIFIED: less than half a cell from a wall that faces it),
-/// LAHAR_ERROR_BUSY, LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_wall_add(
@@ -94,8 +90,6 @@ fn to_wall(wall: &lahar_wall) -> Result<Wall> {
 
 /// Removes a wall. Its id is not used again.
 ///
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_wall_remove(world: *mut lahar_world, id: i64) -> lahar_status {
@@ -109,7 +103,6 @@ pub unsafe extern "C" fn lahar_wall_remove(world: *mut lahar_world, id: i64) -> 
 /// Force of a wall on the material in the last step; 0 before the first step with the wall.
 ///
 /// `force`: written [N], shape [3].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_NOT_FOUND, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 ///
 /// cbindgen:ptrs-as-arrays=[[force; 3]]

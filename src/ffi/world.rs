@@ -94,7 +94,6 @@ unsafe impl Grows for lahar_world_options {
 /// Fills the options with their defaults.
 ///
 /// `size`: sizeof(lahar_world_options).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE.
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_options_init(
@@ -172,9 +171,6 @@ fn flag(value: i32, name: &str) -> Result<bool> {
 ///
 /// `options`: copied.
 /// `world`: set to the new handle, or to NULL on failure; the host frees it with lahar_world_free.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_STRUCT_SIZE, LAHAR_ERROR_INVALID_ARGUMENT,
-/// LAHAR_ERROR_OUT_OF_MEMORY (a static grid), LAHAR_ERROR_UNSUPPORTED (options that cannot be
-/// combined; the message names the nearest ones that can).
 /// Thread: any
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_create(
@@ -209,8 +205,6 @@ pub unsafe extern "C" fn lahar_world_free(world: *mut lahar_world) {
 /// lahar_world_set_gravity_table.
 ///
 /// `gravity`: [m/s^2], shape [3], finite.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 ///
 /// cbindgen:ptrs-as-arrays=[[gravity; 3]]
@@ -230,8 +224,6 @@ pub unsafe extern "C" fn lahar_world_set_gravity(
 /// set it back to 0 before dynamics.
 ///
 /// `damping`: [-], in [0, 1).
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT, LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_set_damping(
@@ -248,20 +240,10 @@ pub unsafe extern "C" fn lahar_world_set_damping(
 /// One step of the given length.
 ///
 /// `dt`: [s], > 0 and not above lahar_world_stable_dt.
-/// Errors, nothing done: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (dt, also if it is
-/// so small that time + dt equals time), LAHAR_ERROR_STEP_TOO_LARGE (the stable step is in
-/// `suggested_dt` of lahar_last_error_info), LAHAR_ERROR_NON_FINITE_INPUT (the host wrote an
-/// invalid value), LAHAR_ERROR_OUTSIDE_GRID (a particle is outside the box of a static grid, too
-/// far away, or beyond the axis of symmetry; the world cannot step until the host writes other
-/// positions or removes the body), LAHAR_ERROR_THREADS (the process was forked after the threads of
-/// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY (the grid),
-/// LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed), LAHAR_ERROR_SMALLER_STEP (only
-/// with the option `retries`: a material failed or asks for a smaller step; its length is in
-/// `suggested_dt`), LAHAR_ERROR_VIEW_OPEN (a write view is open), LAHAR_ERROR_BUSY,
-/// LAHAR_ERROR_POISONED.
-/// Errors that poison the world: LAHAR_ERROR_MATERIAL_FAILED, LAHAR_ERROR_NON_FINITE
-/// (with `retries` neither, unless a model fails as a whole), LAHAR_ERROR_PLUGIN_BROKEN,
-/// LAHAR_ERROR_PANIC; lahar_last_error_info gives the body, the particle, the step and the time.
+///
+/// If an error poisons the world, lahar_last_error_info gives the body, the particle, the step and
+/// the time.
+///
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> lahar_status {
@@ -276,8 +258,6 @@ pub unsafe extern "C" fn lahar_world_step(world: *mut lahar_world, dt: f64) -> l
 /// One step of the stable length.
 ///
 /// `dt`: gets the length of the step [s]; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if the stable step is infinite,
-/// or so small that time + dt equals time.
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step_auto(
@@ -301,9 +281,9 @@ pub unsafe extern "C" fn lahar_world_step_auto(
 /// reason is no error.
 /// `steps_done`: gets the number of committed steps, also if a step fails; may be NULL.
 /// `time`: gets the time that was reached [s], also if a step fails; may be NULL.
-/// Errors: as lahar_world_step; LAHAR_ERROR_INVALID_ARGUMENT also if `until` is not finite or in
-/// the past, if `max_steps` is negative, or if the stable step becomes so small that time + dt
-/// equals time. A positive status means that no partial step was committed.
+///
+/// A positive status means that no partial step was committed.
+///
 /// Thread: owner
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_advance(
@@ -343,8 +323,6 @@ fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
 /// that the materials ask for; c is the wave speed, v the velocity of the particle, g gravity, h
 /// the spacing, D the dimension, nu the kinematic viscosity. Of gravity by a table the largest
 /// value in the step is used. A prescribed velocity V adds the condition |V| dt <= cfl h.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material
-/// gives no wave speed).
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_stable_dt(
@@ -362,7 +340,6 @@ pub unsafe extern "C" fn lahar_world_stable_dt(
 /// Time of the world.
 ///
 /// `time`: gets the time [s].
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_time(
@@ -380,7 +357,6 @@ pub unsafe extern "C" fn lahar_world_time(
 /// Number of committed steps.
 ///
 /// `steps`: gets the number.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_step_count(
@@ -398,7 +374,6 @@ pub unsafe extern "C" fn lahar_world_step_count(
 /// Length of the last committed step.
 ///
 /// `dt`: gets the length [s]; 0 before the first step.
-/// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY.
 /// Thread: callback-ok
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lahar_world_last_dt(

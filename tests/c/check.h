@@ -19,7 +19,8 @@ static void check(int line, const char *text, int is_true) {
   fprintf(stderr, "line %d: not true: %s\n", line, text);
 }
 
-/* The call must answer `wanted`; if that is an error, its message must contain `part` and lahar_last_error_info its code. */
+/* The call must answer `wanted`; if that is an error, its message must contain `part` and lahar_last_error_info its code,
+ * and the status must be one that the function is documented to return. */
 #define EXPECT(call, wanted, part) expect(__LINE__, #call, (call), (wanted), (part))
 #define OK(call) EXPECT(call, LAHAR_OK, "")
 
@@ -31,7 +32,7 @@ static void expect(int line, const char *call, lahar_status got, lahar_status wa
     info.struct_size = sizeof info;
     lahar_last_error_info(&info);
   }
-  if (got == wanted && strstr(text, part) && info.code == got) return;
+  if (got == wanted && strstr(text, part) && info.code == got && !strstr(text, "not documented for this function")) return;
   ++failures;
   fprintf(stderr, "line %d: %s\n  got %s \"%s\" (code %d)\n  wanted %s with \"%s\"\n", line, call, lahar_status_name(got),
           text, (int)info.code, lahar_status_name(wanted), part);

@@ -8,6 +8,7 @@ use lahar::boundary::WallKind;
 use lahar::choice::List;
 use lahar::context::LogLevel;
 use lahar::error::Status;
+use lahar::ffi::answers::ANSWERS;
 use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;
@@ -200,6 +201,16 @@ fn the_header_declares_the_exported_functions_and_no_others() {
     declared.sort_unstable();
     let list = read("include/lahar/symbols.txt");
     assert_eq!(declared, list.lines().collect::<Vec<_>>());
+}
+
+#[test]
+fn the_list_of_statuses_has_every_function_that_returns_one_in_the_order_of_the_header() {
+    let header = read("include/lahar/lahar.h");
+    let declared = header.lines().filter_map(|l| l.strip_prefix("lahar_status ")?.split_once('('));
+    let declared: Vec<&str> = declared.map(|(name, _)| name).collect();
+    let listed: Vec<&str> = ANSWERS.iter().map(|(name, _)| *name).collect();
+    assert_eq!(listed, declared);
+    assert_eq!(header.matches("// Errors: ").count(), listed.len());
 }
 
 #[test]

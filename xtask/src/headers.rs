@@ -3,7 +3,8 @@
 //!
 //! cbindgen translates one Rust file at a time, so that the header has the sections of `src/ffi`;
 //! the sizes and offsets that the headers assert come from `src/ffi/layout.rs`, where Rust asserts
-//! them too. The constants of choices come from their lists, see [`lahar::choice`]. The list of
+//! them too. The constants of choices come from their lists, see [`lahar::choice`]; the statuses that
+//! a function may return come from [`lahar::ffi::answers`]. The list of
 //! exported symbols, `include/lahar/symbols.txt`, is made from the same sources.
 
 use lahar::background::GridPolicy;
@@ -11,6 +12,7 @@ use lahar::boundary::WallKind;
 use lahar::choice::List;
 use lahar::context::LogLevel;
 use lahar::error::Status;
+use lahar::ffi::answers;
 use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;
@@ -95,7 +97,9 @@ fn host_header(root: &Path) -> Result<String, String> {
         let path = root.join(format!("src/ffi/{section}.rs"));
         write_banner(&mut text, section, &path)?;
         choices.iter().for_each(|choice| write_constants(&mut text, choice));
-        write_items(&mut text, &path, &not_in_functions)?;
+        let mut items = String::new();
+        write_items(&mut items, &path, &not_in_functions)?;
+        text += &with_answers(&items)?;
     }
     // Typedefs of lahar_plugin.h, which may be included after this header or not at all.
     for name in ["lahar_plugin_desc", "lahar_host_api"] {
@@ -138,6 +142,44 @@ fn write_banner(text: &mut String, name: &str, path: &Path) -> Result<(), String
     }
     text.push_str(" */\n\n");
     Ok(())
+}
+
+/// The items of a section with the line `Errors:` of each function before its line `Thread:`.
+fn with_answers(items: &str) -> Result<String, String> {
+    let mut out = String::new();
+    let (mut doc, mut tag) = (String::new(), None);
+    for line in items.lines() {
+        if line.starts_with("//") {
+            if line.starts_with("// Thread:") {
+                tag = Some(doc.len());
+            }
+            doc = doc + line + "\n";
+            continue;
+        }
+        let function = line.strip_prefix("lahar_status ").and_then(|l| l.split('(').next());
+        if let (Some(function), Some(tag)) = (function, tag) {
+            let text = answers::text(function)
+                .ok_or_else(|| format!("{function} is missing in src/ffi/answers.rs"))?;
+            doc.insert_str(tag, &wrapped(&format!("Errors: {text}.")));
+        }
+        out = out + &std::mem::take(&mut doc) + line + "\n";
+        tag = None;
+    }
+    Ok(out + &doc)
+}
+
+/// A text in lines of comments of at most 100 columns.
+fn wrapped(text: &str) -> String {
+    let mut lines = String::new();
+    let mut line = String::from("//");
+    for word in text.split(' ') {
+        if line.len() + 1 + word.len() > 100 {
+            lines += &format!("{line}\n");
+            line = "//".into();
+        }
+        line = line + " " + word;
+    }
+    lines + &line + "\n"
 }
 
 /// A constant for each value of a choice.
@@ -258,8 +300,9 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
  *
  * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
  * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
- * a text that says what was expected, what was received and what to do. No function prints, exits or
- * aborts.
+ * a text that says what was expected, what was received and what to do. Each function lists the statuses
+ * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar. No function prints,
+ * exits or aborts.
  *
  * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
  * object first set the handle to NULL, and to the object only if they succeed. Functions that free
