@@ -80,6 +80,12 @@ choices! {
     }
 }
 
+/// Names that an error lists; more are only counted.
+const FEW: usize = 24;
+
+/// Longest name for which the closest one is looked for [bytes].
+const LONGEST_NAME: usize = 60;
+
 /// Where in a run an error happened, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Place {
@@ -126,15 +132,21 @@ impl Error {
         name: &str,
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
-        let known: Vec<&str> = known.into_iter().collect();
-        let closest = known
-            .iter()
-            .map(|k| (strsim::damerau_levenshtein(k, name), *k))
-            .min()
-            .map_or(String::new(), |(_, k)| format!("; did you mean `{k}`?"));
-        let list = match known.len() {
+        let (mut count, mut few, mut closest) = (0, String::new(), None);
+        for known in known {
+            count += 1;
+            if count <= FEW {
+                few = few + if count == 1 { "" } else { ", " } + known;
+            }
+            if name.len().max(known.len()) <= LONGEST_NAME {
+                let found = (strsim::damerau_levenshtein(known, name), known);
+                closest = Some(closest.map_or(found, |closest| found.min(closest)));
+            }
+        }
+        let closest = closest.map_or(String::new(), |(_, k)| format!("; did you mean `{k}`?"));
+        let list = match count {
             0 => " (none is known yet)".to_string(),
-            1..=24 => format!(" (known: {})", known.join(", ")),
+            1..=FEW => format!(" (known: {few})"),
             n => format!(" ({n} are known)"),
         };
         Self::new(Status::UnknownName, format!("no {what} is named `{name}`{closest}{list}"))
@@ -149,3 +161,47 @@ impl Error {
 
 /// Result of everything in lahar that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// The beginning of a text, for people, in one line: control characters are escaped, and what is
+/// longer than `most` bytes is cut.
+pub fn one_line(text: &str, most: usize) -> String {
+    let mut line = String::new();
+    for letter in text.chars() {
+        if line.len() >= most {
+            line.push('\u{2026}');
+            break;
+        }
+        match letter.is_control() {
+            true => line.extend(letter.escape_default()),
+            false => line.push(letter),
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_closest_of_known_names_is_found_and_few_are_listed() {
+        let text = |name: &str, known: &[&str]| {
+            Error::unknown_name("soil", name, known.iter().copied()).message
+        };
+        assert_eq!(
+            text("slit", &["sand", "silt", "clay"]),
+            "no soil is named `slit`; did you mean `silt`? (known: sand, silt, clay)"
+        );
+        assert_eq!(text("slit", &[]), "no soil is named `slit` (none is known yet)");
+        let many = text("slit", &["sand", "silt", "clay"].repeat(9));
+        assert!(many.ends_with("did you mean `silt`? (27 are known)"), "{many}");
+        assert!(!text(&"x".repeat(5000), &["sand"]).contains("did you mean"));
+    }
+
+    #[test]
+    fn a_text_becomes_one_line_that_is_not_too_long() {
+        let text = one_line("no `a\nb\u{1b}[31m\u{85}`: é", 100);
+        assert_eq!(text, "no `a\\nb\\u{1b}[31m\\u{85}`: é");
+        assert_eq!(one_line("ééé", 4), "éé\u{2026}");
+    }
+}

@@ -4,6 +4,8 @@
 //! context, can log: workers for all their life, callers inside a [`LogScope`].
 
 use crate::choice::choices;
+use crate::error::one_line;
+use crate::memory;
 use std::cell::RefCell;
 use std::mem;
 use std::sync::atomic::{AtomicI32, Ordering};
@@ -30,6 +32,9 @@ pub type LogSink = Arc<dyn Fn(i32, &str) + Send + Sync>;
 /// Lines beyond this number are counted and dropped until the next delivery.
 const CAPACITY: usize = 1000;
 
+/// Longest line [bytes]; what is longer is cut.
+const LONGEST_LINE: usize = 4096;
+
 /// The lines of one context that wait for delivery.
 pub(crate) struct LogQueue {
     max_level: AtomicI32,
@@ -55,8 +60,12 @@ impl LogQueue {
             return;
         }
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        if waiting.lines.len() < CAPACITY {
-            waiting.lines.push((level, text.to_string()));
+        // a line that there is no memory for is lost too
+        if waiting.lines.len() < CAPACITY
+            && memory::reserve(&mut waiting.lines, 1, "the log").is_ok()
+            && memory::ensure(2 * LONGEST_LINE, "the log").is_ok()
+        {
+            waiting.lines.push((level, one_line(text, LONGEST_LINE)));
         } else {
             waiting.lost += 1;
         }
@@ -125,5 +134,24 @@ impl LogScope {
 impl Drop for LogScope {
     fn drop(&mut self) {
         CURRENT.set(self.previous.take());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_stays_one_line_and_ends_somewhere() {
+        let (queue, seen) = (LogQueue::default(), Arc::new(Mutex::new(Vec::new())));
+        let sink = Arc::clone(&seen);
+        let push = move |_: i32, line: &str| sink.lock().expect("a lock").push(line.to_string());
+        queue.set_sink(Some(Arc::new(push)), 3);
+        queue.push(1, "one\nlahar error: two\r\x07");
+        queue.push(1, &"x".repeat(1_000_000));
+        queue.flush();
+        let seen = seen.lock().expect("a lock");
+        assert_eq!(seen[0], "one\\nlahar error: two\\r\\u{7}");
+        assert!((4096..4200).contains(&seen[1].len()), "{} bytes", seen[1].len());
     }
 }

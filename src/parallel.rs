@@ -7,11 +7,11 @@ use crate::error::{Error, Result, Status};
 use crate::log::{self, LogQueue, LogScope};
 use crate::platform;
 use crate::simd::environment;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{BroadcastContext, ThreadPool, ThreadPoolBuilder};
 use std::mem;
 use std::process;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
 /// Below this number of particles a step is serial: threads would cost more than they bring.
@@ -111,6 +111,15 @@ impl Team {
     /// Runs a step, or what else calls the methods below, where the team works.
     pub fn run<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         if self.together { self.threads.install(f) } else { f() }
+    }
+
+    /// Calls `f` on every thread that works, one after the other, and gives the first error: what
+    /// one thread tries to reserve must not be missing on another.
+    pub fn on_each_thread(&self, f: impl Fn() -> Result<()> + Sync) -> Result<()> {
+        match &self.threads.pool {
+            Some(pool) if self.together => pool.on_each_thread(f),
+            _ => f(),
+        }
     }
 
     /// Whether all threads work, or one.
@@ -325,6 +334,20 @@ impl Pool {
     fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(f),
+            None => f(),
+        }
+    }
+
+    fn on_each_thread(&self, f: impl Fn() -> Result<()> + Sync) -> Result<()> {
+        match &self.pool {
+            Some(pool) => {
+                let alone = Mutex::new(());
+                let one_by_one = |_: BroadcastContext<'_>| {
+                    let _alone = alone.lock().unwrap_or_else(PoisonError::into_inner);
+                    f()
+                };
+                pool.broadcast(one_by_one).into_iter().collect()
+            }
             None => f(),
         }
     }

@@ -5,8 +5,8 @@
  * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
  * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
  * a text that says what was expected, what was received and what to do. Each function lists the statuses
- * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar. No function prints,
- * exits or aborts.
+ * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar, and
+ * LAHAR_ERROR_OUT_OF_MEMORY if not even 64 kB can be had. No function prints, exits or aborts.
  *
  * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
  * object first set the handle to NULL, and to the object only if they succeed. Functions that free
@@ -15,8 +15,8 @@
  * velocities and tractions have int64_t ids, which are never used again.
  *
  * Pointers must not be NULL unless the text says so. Arrays of the host are read or written only during
- * the call, except through views. Texts are NUL-terminated UTF-8. Texts that lahar returns by pointer are
- * static: they are valid until the process ends.
+ * the call, except through views. Texts are NUL-terminated UTF-8, of 4096 bytes at most. Texts that lahar
+ * returns by pointer are static: they are valid until the process ends.
  *
  * Structs begin with `struct_size`, their sizeof, so that fields can be added at the end. Structs that
  * have an init function are filled by it. In the others, which lahar fills, the host sets
@@ -265,7 +265,7 @@ typedef struct lahar_plugin_info {
 //
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (threads or one of the
 // variables), LAHAR_ERROR_FILE (LAHAR_CAPSULES, see lahar_context_set_capsule_folder),
-// LAHAR_ERROR_THREADS.
+// LAHAR_ERROR_THREADS, LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: any
 lahar_status lahar_context_create(int32_t threads, lahar_context **context);
 
@@ -330,8 +330,8 @@ void lahar_log_stderr(int32_t level, const char *message, void *user);
 // but contains an Abaqus UMAT or VUMAT is accepted too if the plugin lahar_umat is found by its
 // name.
 // `plugin`: gets its index in the context; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
-// LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8), LAHAR_ERROR_PLUGIN_NOT_FOUND, LAHAR_ERROR_PLUGIN_INVALID, LAHAR_ERROR_PLUGIN_ABI,
 // LAHAR_ERROR_PLUGIN_REFUSED.
 // Thread: any
 lahar_status lahar_context_load_plugin(lahar_context *context,
@@ -359,8 +359,8 @@ lahar_status lahar_context_register_plugin(lahar_context *context,
 //
 // `folder`: an existing folder; NULL or "": no capsules. A new context has the folder of the
 // environment variable LAHAR_CAPSULES.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
-// LAHAR_ERROR_FILE (the folder does not exist; nothing has changed).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8), LAHAR_ERROR_FILE (the folder does not exist; nothing has changed).
 // Thread: any
 lahar_status lahar_context_set_capsule_folder(lahar_context *context, const char *folder);
 
@@ -549,8 +549,8 @@ lahar_status lahar_context_model_info(const lahar_context *context,
 //
 // `name`: NUL-terminated, UTF-8.
 // `model`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
-// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_context_find_model(const lahar_context *context, const char *name, int64_t *model);
 
@@ -593,9 +593,9 @@ typedef struct lahar_material lahar_material;
 // units; NULL is allowed if `count` is 0.
 // `material`: set to the new handle, or to NULL on failure; the host frees it with
 // lahar_material_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `count`; a parameter that is given twice or not finite), LAHAR_ERROR_UNKNOWN_NAME (the message
-// names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `count`; a parameter that is given twice or not finite), LAHAR_ERROR_UNKNOWN_NAME (the
+// message names the closest one), LAHAR_ERROR_MISSING_PARAMETER, LAHAR_ERROR_OUT_OF_BOUNDS,
 // LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: any
 lahar_status lahar_material_create(lahar_context *context,
@@ -612,8 +612,8 @@ void lahar_material_free(lahar_material *material);
 // Value of a parameter, given or default.
 //
 // `value`: gets the value, in the unit of lahar_parameter_info.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
-// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one).
 // Thread: any
 lahar_status lahar_material_value(const lahar_material *material,
                                   const char *parameter,
@@ -1156,9 +1156,9 @@ lahar_status lahar_body_field_info(const lahar_world *world,
 // Index of the field of this name.
 //
 // `field`: gets the index.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8),
-// LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND (the body),
-// LAHAR_ERROR_BUSY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND (the
+// body), LAHAR_ERROR_BUSY.
 // Thread: callback-ok
 lahar_status lahar_body_find_field(const lahar_world *world, int64_t body, const char *name, int64_t *field);
 
@@ -1168,8 +1168,8 @@ lahar_status lahar_body_find_field(const lahar_world *world, int64_t body, const
 // `values`: component c of particle k is written to values[c * component_stride + k *
 // point_stride], in the unit of the field. If both strides are 0, the array is interleaved, shape
 // [count, components].
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `count`, strides), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `count`, strides), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
 // LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_BUFFER_TOO_SMALL (`count`).
 // Thread: callback-ok
 lahar_status lahar_body_read(const lahar_world *world,
@@ -1194,9 +1194,9 @@ lahar_status lahar_body_read(const lahar_world *world,
 // The viscous stress of a body that moves is not checked.
 //
 // `count`, `values`, strides: as in lahar_body_read.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `count`, strides, a value that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names the
-// closest one), LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `count`, strides, a value that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names
+// the closest one), LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY,
 // LAHAR_ERROR_BUFFER_TOO_SMALL (`count`), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED.
 // Thread: owner
 lahar_status lahar_body_write(lahar_world *world,
@@ -1270,12 +1270,13 @@ typedef struct lahar_view_info {
 //
 // `access`: LAHAR_ACCESS_READ or LAHAR_ACCESS_WRITE.
 // `view`: set to the new handle, or to NULL on failure; the host frees it with lahar_view_free.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `access`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND
-// (the body), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have to be mapped to the
-// grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step,
-// if particles have to be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have
-// to be mapped), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_POISONED (write access).
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `access`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+// LAHAR_ERROR_NOT_FOUND (the body), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have
+// to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_READ_ONLY, LAHAR_ERROR_OUTSIDE_GRID (as
+// in lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY,
+// LAHAR_ERROR_POISONED (write access).
 // Thread: owner
 lahar_status lahar_body_view(lahar_world *world,
                              int64_t body,
@@ -1827,12 +1828,12 @@ lahar_status lahar_grid_field_info(const lahar_world *world, int64_t field, laha
 // `count`, `nodes`: numbers of nodes; NULL: all nodes of the active blocks, in block order, and
 // `count` is `active_nodes` of lahar_grid_statistics.
 // `values`: written, shape [count, components], in the unit of the field.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `count`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one), LAHAR_ERROR_NOT_FOUND (a
-// node, before anything is written), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles
-// have to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID (as in
-// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step,
-// if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `count`), LAHAR_ERROR_UNKNOWN_NAME (the message names the closest one),
+// LAHAR_ERROR_NOT_FOUND (a node, before anything is written), LAHAR_ERROR_VIEW_OPEN (a write view
+// is open, and particles have to be mapped to the grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID
+// (as in lahar_world_step, if particles have to be mapped), LAHAR_ERROR_THREADS (as in
+// lahar_world_step, if particles have to be mapped), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_grid_read(const lahar_world *world,
                              const char *field,
@@ -1847,8 +1848,8 @@ lahar_status lahar_grid_read(const lahar_world *world,
 // `values`: written, shape [count, components], in the unit of the field; zeros where there is no
 // material.
 // `inside`: written, shape [count]: 1 where there is material, else 0; may be NULL.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8;
-// `count`; a coordinate that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names the
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; `count`; a coordinate that is not finite), LAHAR_ERROR_UNKNOWN_NAME (the message names the
 // closest one), LAHAR_ERROR_VIEW_OPEN (a write view is open, and particles have to be mapped to the
 // grid), LAHAR_ERROR_BUSY, LAHAR_ERROR_OUTSIDE_GRID (as in lahar_world_step, if particles have to
 // be mapped), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
@@ -1906,8 +1907,8 @@ lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_to
 //
 // `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
 // then renamed, so that an existing file is replaced as a whole or not at all.
-// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8; a path
-// that is empty or does not end in `.vtp`), LAHAR_ERROR_BUSY, LAHAR_ERROR_FILE,
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
+// UTF-8; it is empty or does not end in `.vtp`), LAHAR_ERROR_BUSY, LAHAR_ERROR_FILE,
 // LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_write_vtp(const lahar_world *world, const char *path);

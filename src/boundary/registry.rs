@@ -4,6 +4,7 @@
 use super::{Loaded, Prescribed, Table, Wall};
 use crate::background::Background;
 use crate::error::{Error, Result, Status};
+use crate::memory::reserve;
 
 /// What a condition that holds nodes must know of the step.
 #[derive(Clone, Copy, Debug)]
@@ -76,11 +77,12 @@ impl<C> Default for List<C> {
 
 impl<C: Condition> List<C> {
     /// Adds a condition and gives its id.
-    pub fn add(&mut self, condition: C) -> i64 {
+    pub fn add(&mut self, condition: C) -> Result<i64> {
+        reserve(&mut self.entries, 1, "the conditions")?;
         let id = self.next;
         self.next += 1;
         self.entries.push(Entry { id, condition, force: [0.0; 3] });
-        id
+        Ok(id)
     }
 
     /// Removes a condition. Error: [`Status::NotFound`].

@@ -1,6 +1,10 @@
 //! Tables over time: what a condition is at a time, piecewise linear between the rows.
 
 use crate::error::{Error, Result};
+use crate::memory::collect;
+
+/// What memory is for, if there is none.
+const WHAT: &str = "the rows of a table";
 
 /// Rows of time [s] and three values; before the first row and after the last one the values of
 /// that row hold.
@@ -41,7 +45,8 @@ impl Table {
                 )));
             }
         }
-        Ok(Self { times: times.to_vec(), values: values.to_vec() })
+        let (times, values) = (times.iter().copied(), values.iter().copied());
+        Ok(Self { times: collect(times, WHAT)?, values: collect(values, WHAT)? })
     }
 
     /// The same table with zeros in the components for which `is_used` is false.

@@ -2,7 +2,11 @@
 
 use super::{BoxRegion, Condition, Table};
 use crate::error::{Error, Place, Result};
+use crate::memory::{collect, reserve};
 use crate::particles::Body;
+
+/// What memory is for, if there is none.
+const WHAT: &str = "the particles of a surface";
 
 /// A dead load on a plane surface of a body: force per area of the surface as it was when the body
 /// was added.
@@ -57,6 +61,7 @@ impl Traction {
                     body.id
                 )));
             };
+            reserve(&mut chosen, 1, WHAT)?;
             chosen.push(Chosen { id: particles.id[k], index: k, x, size });
         }
         if chosen.is_empty() {
@@ -83,15 +88,15 @@ impl Traction {
                 c.x[0]
             )));
         }
-        let mut wanted = vec![NONE; particles.len()];
+        let mut wanted = collect((0..particles.len()).map(|_| NONE), WHAT)?;
         for (n, c) in chosen.iter().enumerate() {
             wanted[c.id as usize] = n as u32;
         }
         Ok(Surface {
-            ids: chosen.iter().map(|c| c.id).collect(),
-            areas: chosen.iter().map(|c| edge(c) * radius(c)).collect(),
-            edges: chosen.iter().map(edge).collect(),
-            places: chosen.iter().map(|c| c.index).collect(),
+            ids: collect(chosen.iter().map(|c| c.id), WHAT)?,
+            areas: collect(chosen.iter().map(|c| edge(c) * radius(c)), WHAT)?,
+            edges: collect(chosen.iter().map(edge), WHAT)?,
+            places: collect(chosen.iter().map(|c| c.index), WHAT)?,
             wanted,
         })
     }

@@ -1,8 +1,9 @@
 //! What each function may answer beside LAHAR_OK: one list.
 //!
 //! `cargo xtask headers` writes the line `Errors:` of every function of `lahar.h` from it, and
-//! [`entry`](super::entry::entry) holds every answer against it. LAHAR_ERROR_PANIC, a defect, is
-//! not listed.
+//! [`entry`](super::entry::entry) holds every answer against it. Two may come from every function
+//! and are listed for none: LAHAR_ERROR_PANIC, a defect, and LAHAR_ERROR_OUT_OF_MEMORY where there
+//! is not even memory for messages and handles. The latter is listed where more may be missing.
 
 use crate::error::Status::{self, *};
 
@@ -17,10 +18,10 @@ const POINTERS: Set = &[(NullArgument, "")];
 /// The function takes or fills a struct.
 const STRUCT: Set = &[(NullArgument, ""), (StructSize, "")];
 /// The function takes a text.
-const TEXT: Set = &[(InvalidArgument, "a text that is not UTF-8")];
+const TEXT: Set = &[(InvalidArgument, "a text that is too long or not UTF-8")];
 /// The function looks for a name.
 const NAME: Set = &[
-    (InvalidArgument, "a text that is not UTF-8"),
+    (InvalidArgument, "a text that is too long or not UTF-8"),
     (UnknownName, "the message names the closest one"),
 ];
 /// The function copies a list into an array of the host.
@@ -93,6 +94,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             POINTERS,
             &[
                 (InvalidArgument, "threads or one of the variables"),
+                (OutOfMemory, ""),
                 (File, "LAHAR_CAPSULES, see lahar_context_set_capsule_folder"),
                 (Threads, ""),
             ],
@@ -429,13 +431,13 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             QUERY,
             TEXT,
             MEMORY,
-            &[(InvalidArgument, "a path that is empty or does not end in `.vtp`"), (File, "")],
+            &[(InvalidArgument, "it is empty or does not end in `.vtp`"), (File, "")],
         ],
     ),
 ];
 
-/// The statuses that a function may return beside [`Status::Ok`] and [`Status::Panic`], each once;
-/// none of a function that is not listed.
+/// The statuses that a function may return beside [`Status::Ok`], and beside what every function may
+/// return, each once; none of a function that is not listed.
 pub fn documented(function: &str) -> Option<Vec<Status>> {
     let sets = answers(function)?;
     Some(Status::ALL.into_iter().filter(|status| holds(sets, *status)).collect())
@@ -464,7 +466,7 @@ pub fn text(function: &str) -> Option<String> {
 
 /// Whether a function that is listed is documented not to return a status.
 pub(super) fn is_unexpected(function: &str, status: Status) -> bool {
-    let always = matches!(status, Ok | Panic);
+    let always = matches!(status, Ok | Panic | OutOfMemory);
     !always && answers(function).is_some_and(|sets| !holds(sets, status))
 }
 
@@ -488,7 +490,9 @@ mod tests {
         let text = text("lahar_grid_read").expect("a function");
         assert!(text.starts_with("LAHAR_ERROR_NULL_ARGUMENT, "), "{text}");
         assert!(
-            text.contains("LAHAR_ERROR_INVALID_ARGUMENT (a text that is not UTF-8; `count`)"),
+            text.contains(
+                "LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not UTF-8; `count`)"
+            ),
             "{text}"
         );
         assert_eq!(text.matches("LAHAR_ERROR_NULL_ARGUMENT").count(), 1);

@@ -69,12 +69,24 @@ pub(super) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Result<&
     Ok(unsafe { &*pointer })
 }
 
+/// Longest text that is accepted [bytes]: that of a path.
+const LONGEST_TEXT: usize = 4096;
+
 /// A NUL-terminated text in UTF-8.
 pub(super) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a str> {
     check(pointer, name)?;
     // SAFETY: not NULL, and by contract NUL-terminated.
     let bytes = unsafe { CStr::from_ptr(pointer) };
-    bytes.to_str().map_err(|_| Error::invalid(format!("`{name}` is not UTF-8: {bytes:?}")))
+    if bytes.count_bytes() > LONGEST_TEXT {
+        return Err(Error::invalid(format!(
+            "`{name}` has {} bytes; expected {LONGEST_TEXT} at most",
+            bytes.count_bytes()
+        )));
+    }
+    bytes.to_str().map_err(|why| {
+        let valid = String::from_utf8_lossy(&bytes.to_bytes()[..why.valid_up_to()]);
+        Error::invalid(format!("`{name}` is not UTF-8 after `{valid}`"))
+    })
 }
 
 /// A count as a usize; negative counts are refused.
@@ -255,16 +267,15 @@ impl<T: Grows> StructOut<T> {
     }
 }
 
-/// Copies a list to the host. With NULL and capacity 0 only the count is set; a short array is not
+/// Copies a list of items, each of so many values, to the host. With NULL and capacity 0 only the count is set; a short array is not
 /// touched.
 pub(super) unsafe fn copy_list<T: Copy>(
-    list: &[T],
-    per_item: usize,
+    (items, per_item): (usize, usize),
+    list: impl Iterator<Item = T>,
     (pointer, capacity): (*mut T, i64),
     count_out: &Out<i64>,
     name: &str,
 ) -> Result<()> {
-    let items = list.len() / per_item.max(1);
     let capacity = count(capacity, "capacity")?;
     if pointer.is_null() && capacity > 0 {
         return Err(null(name));
@@ -277,9 +288,9 @@ pub(super) unsafe fn copy_list<T: Copy>(
         let message = format!("`{name}` has room for {capacity}, but there are {items}");
         return Err(Error::new(Status::BufferTooSmall, message));
     }
-    // SAFETY: by contract `capacity` items are writable, and list.len() values are not more than
-    // that.
-    unsafe { slice_mut(pointer, list.len(), name) }?.copy_from_slice(list);
+    // SAFETY: by contract `capacity` items are writable, and `items` are not more than that.
+    let target = unsafe { slice_mut(pointer, items * per_item, name) }?;
+    target.iter_mut().zip(list).for_each(|(target, value)| *target = value);
     Ok(())
 }
 

@@ -11,6 +11,7 @@ use super::material::lahar_material;
 use super::status::lahar_status;
 use super::world::lahar_world;
 use crate::error::{Error, Result};
+use crate::memory::collect;
 use crate::particles::seeding::{Fill, Region};
 use crate::world::host_arrays::{ParticleArrays, Strided};
 
@@ -301,7 +302,7 @@ unsafe fn polygon(n: i64, vertices: *const f64) -> Result<Vec<[f64; 2]>> {
     let n = product(count(n, "count")?, 2, "vertices")?;
     // SAFETY: by contract of the caller the points are there.
     let values = unsafe { slice(vertices, n, "vertices") }?;
-    Ok(values.chunks_exact(2).map(|v| [v[0], v[1]]).collect())
+    collect(values.chunks_exact(2).map(|v| [v[0], v[1]]), "the corners of a polygon")
 }
 
 fn flat(mut vector: [f64; 3], dimension: usize) -> [f64; 3] {
@@ -386,7 +387,7 @@ pub unsafe extern "C" fn lahar_world_body_count(
     entry("lahar_world_body_count", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
         let (cell, bodies) = unsafe { (scope.world(world)?, out(bodies, "bodies")?) };
-        bodies.set(cell.query(|w| Ok(w.bodies().len()))? as i64);
+        bodies.set(cell.query(|w| Ok(w.body_count()))? as i64);
         Ok(())
     })
 }
@@ -406,9 +407,11 @@ pub unsafe extern "C" fn lahar_world_bodies(
     entry("lahar_world_bodies", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
         let (cell, count) = unsafe { (scope.world(world)?, out(count, "count")?) };
-        let bodies = cell.query(|w| Ok(w.bodies()))?;
-        // SAFETY: the host passes NULL or `capacity` writable integers.
-        unsafe { copy_list(&bodies, 1, (ids, capacity), &count, "ids") }
+        cell.query(|w| {
+            let bodies = (0..w.body_count()).map(|place| w.body_id(place));
+            // SAFETY: the host passes NULL or `capacity` writable integers.
+            unsafe { copy_list((w.body_count(), 1), bodies, (ids, capacity), &count, "ids") }
+        })
     })
 }
 

@@ -29,9 +29,10 @@ impl ContextCell {
         *self.last_error.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
     }
 
-    /// The last error of any thread.
-    pub(super) fn last_error(&self) -> Option<Error> {
-        self.last_error.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    /// Calls `f` with the message of the last error of any thread.
+    pub(super) fn with_error_message<R>(&self, f: impl FnOnce(&str) -> R) -> R {
+        let last = self.last_error.lock().unwrap_or_else(PoisonError::into_inner);
+        f(last.as_ref().map_or("", |error| &error.message))
     }
 }
 
@@ -318,7 +319,7 @@ mod tests {
             cell.change(Change::Values, |_| panic!("on purpose"))
         });
         assert_eq!(code, Status::Panic as i32);
-        assert!(cell.context.last_error().expect("an error").message.contains("on purpose"));
+        assert!(cell.context.with_error_message(|message| message.contains("on purpose")));
         assert_eq!(status(cell.change(Change::Values, |_| Ok(()))), Status::Poisoned);
         assert_eq!(cell.query(|w| Ok(w.time())), Ok(0.0));
         assert_eq!(status(cell.query_order(|_| Ok(()))), Status::Ok);

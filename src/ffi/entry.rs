@@ -9,7 +9,8 @@
 use super::answers;
 use super::cells::{ContextCell, WorldCell};
 use super::status::lahar_status;
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Place, Result, Status, one_line};
+use crate::memory;
 use crate::platform::{self, Silence};
 use crate::simd::environment;
 use std::any::Any;
@@ -22,7 +23,12 @@ thread_local! {
     static PANIC_LOCATION: RefCell<Option<String>> = const { RefCell::new(None) };
     /// The error of the last call of this thread that failed.
     static LAST_ERROR: RefCell<Option<Error>> = const { RefCell::new(None) };
+    /// Whether another call failed since then, with not even memory for its message.
+    static NO_MEMORY: Cell<bool> = const { Cell::new(false) };
 }
+
+/// Longest message [bytes]; one that names a path may be that long.
+const LONGEST_MESSAGE: usize = 8192;
 
 /// End of the message of an error that the function is not documented to return; tests look for it.
 const UNDOCUMENTED: &str = " (this status is not documented for this function: please report it)";
@@ -57,7 +63,8 @@ impl Scope {
         let status = match result {
             Ok(()) => Status::Ok,
             Err(mut error) => {
-                error.message = format!("{function}: {}", error.message);
+                let message = one_line(&error.message, LONGEST_MESSAGE);
+                error.message = format!("{function}: {message}");
                 if answers::is_unexpected(function, error.status) {
                     error.message += UNDOCUMENTED;
                 }
@@ -76,12 +83,17 @@ impl Scope {
             context.set_last_error(error.clone());
         }
         let _ = LAST_ERROR.try_with(|last| last.replace(Some(error)));
+        NO_MEMORY.set(false);
         status
     }
 }
 
 /// Runs the body of an exported function; `function` is its name, for the message.
 pub(super) fn entry(function: &str, body: impl FnOnce(&mut Scope) -> Result<()>) -> lahar_status {
+    if !memory::has_spare() {
+        NO_MEMORY.set(true);
+        return Status::OutOfMemory as lahar_status;
+    }
     install_hook();
     let _silence = Silence::enter();
     let _environment = environment::Guard::new();
@@ -113,9 +125,16 @@ pub(super) fn call_host<R>(f: impl FnOnce() -> R) -> R {
     platform::aloud(|| environment::with_host(f))
 }
 
-/// The error of the last call of this thread that failed.
-pub(super) fn last_error() -> Option<Error> {
-    LAST_ERROR.try_with(|last| last.borrow().clone()).unwrap_or(None)
+/// Calls `f` with status, message and place of the last error of this thread.
+pub(super) fn with_last_error<R>(f: impl Fn(Status, &str, Place) -> R) -> R {
+    let none = || f(Status::Ok, "", Place::default());
+    if NO_MEMORY.get() {
+        return f(Status::OutOfMemory, "there is not even memory for a message", Place::default());
+    }
+    let of = |error: &Error| f(error.status, &error.message, error.place);
+    LAST_ERROR
+        .try_with(|last| last.borrow().as_ref().map_or_else(none, of))
+        .unwrap_or_else(|_| none())
 }
 
 /// Installs, once in a process, a panic hook that is silent on threads inside the library and calls
@@ -160,11 +179,15 @@ fn panic_error(payload: Box<dyn Any + Send>) -> Error {
 mod tests {
     use super::*;
 
+    fn message() -> String {
+        with_last_error(|_, message, _| message.to_string())
+    }
+
     #[test]
     fn a_panic_becomes_a_status_and_a_message_and_the_next_call_works() {
         let status = entry("lahar_test", |_| panic!("number {}", 7));
         assert_eq!(status, Status::Panic as i32);
-        let message = last_error().expect("a recorded error").message;
+        let message = message();
         assert!(message.starts_with("lahar_test: a defect of lahar was caught at "), "{message}");
         assert!(message.contains("number 7"), "{message}");
         assert_eq!(entry("lahar_test", |_| Ok(())), 0);
@@ -174,10 +197,9 @@ mod tests {
     fn an_answer_that_is_not_documented_is_marked() {
         let refuse = |status| move |_: &mut Scope| Err(Error::new(status, "no"));
         entry("lahar_version", refuse(Status::Busy));
-        let message = last_error().expect("a recorded error").message;
-        assert_eq!(message, format!("lahar_version: no{UNDOCUMENTED}"));
+        assert_eq!(message(), format!("lahar_version: no{UNDOCUMENTED}"));
         entry("lahar_version", refuse(Status::NullArgument));
-        assert_eq!(last_error().expect("a recorded error").message, "lahar_version: no");
+        assert_eq!(message(), "lahar_version: no");
     }
 
     #[test]

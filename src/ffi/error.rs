@@ -3,9 +3,8 @@
 
 use super::arguments::{Grows, copy_text, optional_out, reference, struct_out};
 use super::context::lahar_context;
-use super::entry::{last_error, status_only};
+use super::entry::{status_only, with_last_error};
 use super::status::lahar_status;
-use crate::error::{Error, Status};
 use std::ffi::c_char;
 
 /// Where and why a call failed, for programs.
@@ -34,10 +33,6 @@ unsafe impl Grows for lahar_error_info {
     const FIRST: usize = 48;
 }
 
-fn message(error: &Option<Error>) -> &str {
-    error.as_ref().map_or("", |error| error.message.as_str())
-}
-
 /// Text of the last error of the calling thread: which function, what was expected, what was
 /// received, what to do.
 ///
@@ -58,7 +53,9 @@ pub unsafe extern "C" fn lahar_last_error_message(
         // SAFETY: the host passes NULL or a writable integer.
         let needed = unsafe { optional_out(needed, "needed") }?;
         // SAFETY: the host passes NULL or `capacity` writable bytes.
-        unsafe { copy_text(message(&last_error()), (buffer, capacity), needed.as_ref()) }
+        with_last_error(|_, message, _| unsafe {
+            copy_text(message, (buffer, capacity), needed.as_ref())
+        })
     })
 }
 
@@ -74,15 +71,15 @@ pub unsafe extern "C" fn lahar_last_error_info(info: *mut lahar_error_info) -> l
     status_only(|| {
         // SAFETY: the host passes NULL or a writable struct.
         let info = unsafe { struct_out(info, "info") }?;
-        let error = last_error().unwrap_or(Error::new(Status::Ok, ""));
+        let (status, place) = with_last_error(|status, _, place| (status, place));
         info.set(lahar_error_info {
             struct_size: 0,
-            code: error.status as lahar_status,
-            body: error.place.body.unwrap_or(-1),
-            particle: error.place.particle.unwrap_or(-1),
-            step: error.place.step.unwrap_or(-1),
-            time: error.place.time.unwrap_or(0.0),
-            suggested_dt: error.place.suggested_dt.unwrap_or(0.0),
+            code: status as lahar_status,
+            body: place.body.unwrap_or(-1),
+            particle: place.particle.unwrap_or(-1),
+            step: place.step.unwrap_or(-1),
+            time: place.time.unwrap_or(0.0),
+            suggested_dt: place.suggested_dt.unwrap_or(0.0),
         });
         Ok(())
     })
@@ -109,6 +106,8 @@ pub unsafe extern "C" fn lahar_context_error_message(
         // SAFETY: the host passes NULL or a writable integer.
         let needed = unsafe { optional_out(needed, "needed") }?;
         // SAFETY: the host passes NULL or `capacity` writable bytes.
-        unsafe { copy_text(message(&cell.last_error()), (buffer, capacity), needed.as_ref()) }
+        cell.with_error_message(|message| unsafe {
+            copy_text(message, (buffer, capacity), needed.as_ref())
+        })
     })
 }

@@ -225,7 +225,11 @@ pub unsafe extern "C" fn lahar_body_ids(
     entry("lahar_body_ids", |scope| {
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
         let (cell, count) = unsafe { (scope.world(world)?, out(count, "count")?) };
-        // SAFETY: the host passes NULL or `capacity` writable integers.
-        cell.query_order(|w| unsafe { copy_list(w.ids(body)?, 1, (ids, capacity), &count, "ids") })
+        cell.query_order(|w| {
+            let list = w.ids(body)?;
+            let copied = list.iter().copied();
+            // SAFETY: the host passes NULL or `capacity` writable integers.
+            unsafe { copy_list((list.len(), 1), copied, (ids, capacity), &count, "ids") }
+        })
     })
 }

@@ -103,14 +103,13 @@ pub unsafe extern "C" fn lahar_grid_blocks(
         // SAFETY: the host passes NULL or a live handle, and NULL or a writable integer.
         let (cell, count) = unsafe { (scope.world(world)?, out(count, "count")?) };
         let d = cell.dimension;
-        let blocks = cell.query_grid(|w| {
-            Ok(w.grid_blocks()
-                .into_iter()
-                .flat_map(|b| b.into_iter().take(d))
-                .collect::<Vec<i64>>())
-        })?;
-        // SAFETY: the host passes NULL or room for `capacity` blocks.
-        unsafe { copy_list(&blocks, d, (coordinates, capacity), &count, "coordinates") }
+        cell.query_grid(|w| {
+            let blocks = w.grid_stats().active_blocks as usize;
+            let all = (0..blocks).flat_map(|place| w.grid_block(place).into_iter().take(d));
+            let room = (coordinates, capacity);
+            // SAFETY: the host passes NULL or room for `capacity` blocks.
+            unsafe { copy_list((blocks, d), all, room, &count, "coordinates") }
+        })
     })
 }
 
@@ -246,26 +245,24 @@ unsafe fn read_nodes(
     let components = node_field(world, field)?.components;
     let n = count(n, "count")?;
     let total = node_count(world);
-    let all: Vec<i64>;
-    let nodes = if nodes.is_null() {
+    let named = if nodes.is_null() {
         if n != total {
             return Err(Error::invalid(format!(
                 "`count` is {n}; without `nodes` it must be {total}, all active nodes"
             )));
         }
-        all = (0..total as i64).collect();
-        &all[..]
+        None
     } else {
         // SAFETY: by contract of the caller `n` nodes stand there.
-        unsafe { slice(nodes, n, "nodes") }?
+        Some(unsafe { slice(nodes, n, "nodes") }?)
     };
-    for node in nodes {
+    for node in named.unwrap_or_default() {
         index(*node, total, "node")?;
     }
     // SAFETY: by contract of the caller there is room for the values of `n` nodes.
     let values = unsafe { slice_mut(values, product(n, components, "values")?, "values") }?;
-    for (node, out) in nodes.iter().zip(values.chunks_exact_mut(components)) {
-        world.node_value(field, *node, out)?;
+    for (k, out) in values.chunks_exact_mut(components).enumerate() {
+        world.node_value(field, named.map_or(k as i64, |nodes| nodes[k]), out)?;
     }
     Ok(())
 }

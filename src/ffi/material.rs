@@ -8,6 +8,7 @@ use super::entry::{entry, quiet_entry};
 use super::status::lahar_status;
 use crate::error::Result;
 use crate::material::Material;
+use crate::memory::reserve;
 use std::ffi::c_char;
 use std::sync::Arc;
 
@@ -56,11 +57,13 @@ unsafe fn named_values<'a>(
     let n = count(n, "count")?;
     // SAFETY: by contract of the caller `n` names and `n` values stand there.
     let (names, values) = unsafe { (slice(names, n, "names")?, slice(values, n, "values")?) };
-    let pairs = names.iter().zip(values).enumerate();
-    // SAFETY: by contract of the caller each name is NULL or a NUL-terminated text.
-    pairs
-        .map(|(i, (name, value))| Ok((unsafe { text(*name, &format!("names[{i}]")) }?, *value)))
-        .collect()
+    let mut named = Vec::new();
+    reserve(&mut named, n, "the parameters")?;
+    for (i, (name, value)) in names.iter().zip(values).enumerate() {
+        // SAFETY: by contract of the caller each name is NULL or a NUL-terminated text.
+        named.push((unsafe { text(*name, &format!("names[{i}]")) }?, *value));
+    }
+    Ok(named)
 }
 
 /// Frees the handle; bodies of the material remain valid. NULL is ignored.

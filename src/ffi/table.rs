@@ -4,6 +4,7 @@
 use super::arguments::{count, product, slice};
 use crate::boundary::Table;
 use crate::error::Result;
+use crate::memory::collect;
 
 /// A table over time. Times must increase, and all numbers must be finite.
 #[repr(C)]
@@ -40,6 +41,6 @@ pub(super) unsafe fn to_table(
             slice(table.values, product(n, components, "values")?, "values")?,
         )
     };
-    let rows: Vec<[f64; 3]> = values.chunks_exact(components).map(to_vector).collect();
+    let rows = collect(values.chunks_exact(components).map(to_vector), "the rows of a table")?;
     Table::new(what, times, &rows).map(Some)
 }

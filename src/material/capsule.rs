@@ -8,18 +8,22 @@ use super::{Kinematics, Material, Model, StressBatch};
 use crate::context::Context;
 use crate::error::{Error, Result, Status};
 use crate::material::scratch::{Scratch, with_scratch};
+use crate::memory::ensure;
 use lahar_plugin_abi::LAHAR_POINT_FAILED;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
 use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 /// Version of the format.
 const FORMAT: u32 = 1;
+
+/// Bytes that a parameter, an input or a state variable takes in a capsule, beside its components.
+const BYTES_OF_NAME: usize = 256;
 
 /// Files of one name in a folder, beyond which no more are written.
 const COPIES: usize = 1000;
@@ -242,8 +246,17 @@ pub struct Occasion {
 
 impl Capsule {
     /// The call at point `k` of a chunk, after it. Version and path of the plugin stay empty.
-    pub fn of_point(material: &Material, s: &Scratch<'_>, k: usize, occasion: Occasion) -> Self {
+    /// Error: [`Status::OutOfMemory`].
+    pub fn of_point(
+        material: &Material,
+        s: &Scratch<'_>,
+        k: usize,
+        occasion: Occasion,
+    ) -> Result<Self> {
         let model = material.model();
+        let names = model.parameters.len() + model.inputs.len() + 2 * model.states.len();
+        let bytes = BYTES_OF_NAME * names + 32 * model.state_components();
+        ensure(bytes, "a failure capsule")?;
         let parameters = model.parameters.iter().zip(&material.values);
         let inputs = model.inputs.iter().zip(components(s.inputs, s.stride, k));
         let name = kinematics_of(model);
@@ -252,7 +265,7 @@ impl Capsule {
             "velocity_gradient" => &*s.velocity_gradient,
             _ => &*s.deformation_gradient,
         };
-        Self {
+        Ok(Self {
             lahar_capsule: FORMAT,
             model: model.name.into(),
             plugin: model.plugin_id.into(),
@@ -269,7 +282,7 @@ impl Capsule {
             stress0: components(s.stress0, s.stride, k),
             state0: states(model, s.state0, s.stride, k),
             end: End::of_point(model, s, k),
-        }
+        })
     }
 
     /// Writes the capsule into a folder as `lahar-capsule-<model>-<body>-<particle>-<step>.json`,
@@ -282,13 +295,15 @@ impl Capsule {
             let text = format!("the failure capsule {} can not be written: {why}", path.display());
             Error::new(Status::File, text)
         };
-        let text = serde_json::to_string_pretty(self).map_err(|why| failed(folder, &why))?;
         for copy in 1..=COPIES {
             let number = if copy == 1 { String::new() } else { format!("-{copy}") };
             let path = folder.join(format!("{stem}{number}.json"));
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(mut file) => {
-                    let written = writeln!(file, "{text}");
+                Ok(file) => {
+                    let mut file = BufWriter::new(file);
+                    let written = serde_json::to_writer_pretty(&mut file, self);
+                    let written = written.map_err(std::io::Error::from);
+                    let written = written.and_then(|()| writeln!(file)).and_then(|()| file.flush());
                     return written.map_err(|why| failed(&path, &why)).map(|()| path);
                 }
                 Err(why) if why.kind() == ErrorKind::AlreadyExists => {}

@@ -5,8 +5,12 @@ use std::cell::RefCell;
 use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_OUTPUT_DT_FACTOR, LAHAR_OUTPUT_ENERGY};
 
 use crate::background::TileNode;
+use crate::error::Result;
 use crate::material::{Input, Kinematics, Material, Model, StressBatch};
-use crate::memory::{Aligned, stride_of};
+use crate::memory::{Aligned, reserve_exact, stride_of};
+
+/// What memory is for, if there is none.
+const WHAT: &str = "the scratch of a chunk";
 
 /// Points for which a thread makes room at once.
 const POINTS: usize = 512;
@@ -130,9 +134,73 @@ thread_local! {
 pub fn with_scratch<R>(
     material: &Material,
     n: usize,
-    work: impl FnOnce(&mut Scratch<'_>) -> R,
-) -> R {
-    with_buffers(0, |points, _| work(&mut points.scratch(material, n, Carried::default())))
+    work: impl FnOnce(&mut Scratch<'_>) -> Result<R>,
+) -> Result<R> {
+    let carried = Carried::default();
+    make_room(Room { components: components(material, carried), tile_nodes: 0 })?;
+    with_buffers(0, |points, _| work(&mut points.scratch(material, n, carried)))
+}
+
+/// How much room a thread needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Room {
+    /// Columns of a chunk.
+    pub components: usize,
+    /// Nodes of a tile.
+    pub tile_nodes: usize,
+}
+
+impl Room {
+    /// What is enough for both.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            components: self.components.max(other.components),
+            tile_nodes: self.tile_nodes.max(other.tile_nodes),
+        }
+    }
+
+    /// Room for the chunks of a material.
+    pub fn of(material: &Material, carried: Carried, tile_nodes: usize) -> Self {
+        Self { components: components(material, carried), tile_nodes }
+    }
+}
+
+/// Makes room on this thread, for chunks of any length.
+pub fn make_room(room: Room) -> Result<()> {
+    BUFFERS.with_borrow_mut(|Buffers { points, tile }| {
+        reserve_exact(tile, room.tile_nodes, WHAT)?;
+        points.make_room(room.components * stride_of(POINTS), stride_of(POINTS))
+    })
+}
+
+/// Components of all columns of a chunk.
+fn components(material: &Material, carried: Carried) -> usize {
+    columns(material.model(), carried).iter().sum()
+}
+
+/// Components of the columns of a chunk, in the order of [`Scratch`].
+fn columns(model: &Model, carried: Carried) -> [usize; 15] {
+    let state = model.state_components();
+    let gives = |output| usize::from(model.outputs & output != 0);
+    let asked = model.kinematics == Kinematics::DeformationGradient;
+    let gradient = if asked || carried.deformation_gradient { 9 } else { 0 };
+    [
+        9,
+        6,
+        gradient,
+        carried.sizes,
+        1,
+        1,
+        6,
+        6,
+        state,
+        state,
+        model.inputs.len(),
+        1,
+        gives(LAHAR_OUTPUT_DIFFUSIVITY),
+        gives(LAHAR_OUTPUT_ENERGY),
+        gives(LAHAR_OUTPUT_DT_FACTOR),
+    ]
 }
 
 /// Calls `work` with this thread's room for points and for a tile of `tile_nodes` nodes.
@@ -149,39 +217,25 @@ pub fn with_buffers<R>(
 }
 
 impl Points {
+    fn make_room(&mut self, doubles: usize, points: usize) -> Result<()> {
+        if self.doubles.as_slice().len() < doubles {
+            self.doubles = Aligned::zeroed(doubles.max(64 * POINTS))?;
+        }
+        if self.status.len() < points {
+            let points = points.max(POINTS + 8);
+            reserve_exact(&mut self.status, points, WHAT)?;
+            self.status.resize(points, 0);
+        }
+        Ok(())
+    }
+
     /// The scratch for `n` points of a material.
     pub fn scratch(&mut self, material: &Material, n: usize, carried: Carried) -> Scratch<'_> {
         let model = material.model();
         let stride = stride_of(n);
-        let state = model.state_components();
-        let gives = |output| usize::from(model.outputs & output != 0);
-        let asked = model.kinematics == Kinematics::DeformationGradient;
-        let gradient = if asked || carried.deformation_gradient { 9 } else { 0 };
-        let sizes = [
-            9,
-            6,
-            gradient,
-            carried.sizes,
-            1,
-            1,
-            6,
-            6,
-            state,
-            state,
-            model.inputs.len(),
-            1,
-            gives(LAHAR_OUTPUT_DIFFUSIVITY),
-            gives(LAHAR_OUTPUT_ENERGY),
-            gives(LAHAR_OUTPUT_DT_FACTOR),
-        ];
+        let sizes = columns(model, carried);
         let needed = sizes.iter().sum::<usize>() * stride;
-        if self.doubles.as_slice().len() < needed {
-            let room = Aligned::zeroed(needed.max(64 * POINTS));
-            self.doubles = room.expect("scratch of a chunk is small");
-        }
-        if self.status.len() < stride {
-            self.status.resize(stride.max(POINTS + 8), 0);
-        }
+        self.make_room(needed, stride).expect("room was made before");
         let mut rest = self.doubles.as_mut_slice();
         let mut sizes = sizes.into_iter();
         let mut take = || {

@@ -198,17 +198,21 @@ macro_rules! fields {
 
             /// Every field that both layouts have, as pairs of columns in this one and in the
             /// other.
-            pub fn shared_with(&self, other: &Self, dimension: usize) -> Vec<(usize, usize)> {
-                let mut pairs = Vec::new();
-                let mut pair = |from: usize, to: usize, count: usize| {
-                    pairs.extend((0..count).map(|c| (from + c, to + c)));
-                };
-                $(pair(self.$name, other.$name, Shape::$shape.components(dimension));)+
-                $(if let (Some(from), Some(to)) = (self.$some, other.$some) {
-                    pair(from.first, to.first, from.count);
-                })+
-                pair(self.state.first, other.state.first, self.state.count);
-                pairs
+            pub fn shared_with(
+                &self,
+                other: &Self,
+                dimension: usize,
+            ) -> impl Iterator<Item = (usize, usize)> {
+                let all = [
+                    $((self.$name, other.$name, Shape::$shape.components(dimension)),)+
+                    $(match (self.$some, other.$some) {
+                        (Some(from), Some(to)) => (from.first, to.first, from.count),
+                        _ => (0, 0, 0),
+                    },)+
+                    (self.state.first, other.state.first, self.state.count),
+                ];
+                all.into_iter()
+                    .flat_map(|(from, to, count)| (0..count).map(move |c| (from + c, to + c)))
             }
         }
     };

@@ -64,12 +64,16 @@ impl Particles {
     }
 
     /// The same particles with other columns: `pairs` of columns from these and in the layout.
-    pub fn with_layout(&self, layout: Layout, pairs: &[(usize, usize)]) -> Result<Self> {
+    pub fn with_layout(
+        &self,
+        layout: Layout,
+        pairs: impl Iterator<Item = (usize, usize)>,
+    ) -> Result<Self> {
         let mut new = Self::new(layout, self.len())?;
         new.id.copy_from_slice(&self.id);
         new.moved.copy_from_slice(&self.moved);
         for (from, to) in pairs {
-            new.column_mut(*to).copy_from_slice(self.column(*from));
+            new.column_mut(to).copy_from_slice(self.column(from));
         }
         Ok(new)
     }
@@ -132,6 +136,12 @@ impl Particles {
     /// Some components in a row, with the padding between them, to write.
     pub fn columns_mut(&mut self, first: usize, components: usize) -> &mut [f64] {
         &mut self.data.as_mut_slice()[first * self.stride..(first + components) * self.stride]
+    }
+
+    /// The ids, and some components in a row to write.
+    pub fn ids_and_columns_mut(&mut self, first: usize, components: usize) -> (&[i64], &mut [f64]) {
+        let columns = first * self.stride..(first + components) * self.stride;
+        (&self.id, &mut self.data.as_mut_slice()[columns])
     }
 
     /// `N` components of the particles `first..end`, each followed by [`LANES`] more doubles, so

@@ -5,6 +5,9 @@ use lahar_plugin_abi::{LAHAR_PLUGIN_ABI_MINOR, lahar_host_api};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char};
 
+/// What is longer of a text of a plugin is cut off [bytes].
+const LONGEST_TEXT: usize = 4096;
+
 thread_local! {
     static ERROR: RefCell<Option<String>> = const { RefCell::new(None) };
 }
@@ -48,5 +51,6 @@ unsafe fn text_of(message: *const c_char) -> Option<String> {
         return None;
     }
     // SAFETY: by contract of the caller.
-    Some(unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned())
+    let bytes = unsafe { CStr::from_ptr(message) }.to_bytes();
+    Some(String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST_TEXT)]).into_owned())
 }

@@ -15,6 +15,8 @@ use super::grid_to_particles::Gather;
 use super::parts::Method;
 use super::pass::{ChunkWork, Pass, Then};
 use crate::background::{Background, Blocks, EDGE, Key, Run, Space};
+use crate::error::Result;
+use crate::memory::{refill, reserve_exact};
 use crate::parallel::{Cut, Divide, Team};
 use crate::particles::{Body, Dilations};
 
@@ -31,6 +33,9 @@ pub struct Patches {
     /// The run of each slot of the grid.
     runs: Vec<u32>,
 }
+
+/// What memory is for, if there is none.
+const WHAT: &str = "the averages of F-bar";
 
 /// No run.
 const NONE: u32 = u32::MAX;
@@ -99,6 +104,16 @@ fn patch_of<const D: usize>(space: &Space<D>, key: Key<D>, x: [f64; D]) -> usize
 }
 
 impl Patches {
+    /// Makes room for the bodies with F-bar.
+    pub fn make_room<const D: usize>(&mut self, bodies: &[Body], blocks: &Blocks<D>) -> Result<()> {
+        let averaged = bodies.iter().filter(|body| body.has_f_bar());
+        let Some(runs) = averaged.map(|body| body.runs.len()).max() else {
+            return Ok(());
+        };
+        refill(&mut self.sums, runs * REACH.pow(D as u32), WHAT)?;
+        reserve_exact(&mut self.runs, blocks.keys().len(), WHAT)
+    }
+
     /// Sums up Σ V tr L and Σ V of each run of a body, patch by patch.
     fn collect<const D: usize>(
         &mut self,

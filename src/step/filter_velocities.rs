@@ -14,6 +14,8 @@ use super::parts::Method;
 use super::pass::{Pass, Then};
 use crate::background::{Background, Nodes, Record};
 use crate::boundary::Conditions;
+use crate::error::Result;
+use crate::memory::reserve_exact;
 use crate::parallel::{Cut, Team};
 use crate::particles::Body;
 use crate::transfer::{TransferKind, filter};
@@ -116,7 +118,7 @@ impl<const D: usize> Filter<'_, D> {
         hold_at_boundaries(self.background, self.conditions, self.impulses, self.team, dt);
     }
 
-    /// Makes room for the nodes if the transfer is filtered; whether it is.
+    /// Begins with the nodes, for which there is room, if the transfer is filtered; whether it is.
     fn begins(&mut self) -> bool {
         let filtered = self.method.options.transfer.is_filtered();
         if filtered {
@@ -151,4 +153,13 @@ struct Terms {
     start: Record,
     /// The sum of the terms so far.
     sum: Record,
+}
+
+impl Filtering {
+    /// Makes room for the nodes if the transfer is filtered.
+    pub fn make_room<const D: usize>(&mut self, method: &Method<D>, nodes: &Nodes) -> Result<()> {
+        let filtered = method.options.transfer.is_filtered();
+        let all = if filtered { nodes.len() } else { 0 };
+        reserve_exact(&mut self.0, all, "the terms of the filter")
+    }
 }

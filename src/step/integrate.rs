@@ -62,7 +62,7 @@ pub fn integrate<const D: usize>(
                 return Ok(Done { dt, unreliable });
             }
             Ok(limits) => (limits.wanted_dt, None),
-            Err(failure) if retries > 0 && failure.is_of_a_point() => (0.5 * dt, Some(failure)),
+            Err(failure) if retries > 0 && failure.of_a_point => (0.5 * dt, Some(failure)),
             Err(failure) => return Err(failed(world, failure)),
         };
         let Parts { bodies, conditions, buffers, freshness, .. } = world;

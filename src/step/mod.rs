@@ -67,6 +67,8 @@ pub mod update_stress;
 pub use order::StepOrder;
 
 use crate::error::Result;
+use crate::material::scratch;
+use crate::memory::reserve_exact;
 
 use apply_boundaries::{apply_boundaries, apply_boundaries_again, hold_velocities};
 use apply_tractions::{apply_tractions, report_tractions};
@@ -89,6 +91,7 @@ pub fn step<const D: usize>(world: &mut Parts<D>, dt: f64) -> Result<Outcome> {
     if world.method.options.retries > 0 {
         save_start(&world.bodies, &mut world.conditions, &mut world.buffers.start)?;
     }
+    make_room(world)?;
     world.hook(HookPoint::Start, dt);
     let outcome = match world.method.options.order {
         StepOrder::Usl => usl(world, dt),     // [ORD-1]
@@ -103,6 +106,7 @@ pub fn step<const D: usize>(world: &mut Parts<D>, dt: f64) -> Result<Outcome> {
 /// Maps particles and loads to the grid, as they are now.
 pub fn map<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     sort(world)?;
+    make_room(world)?;
     scatter(world, world.clock.time);
     update(world, 0.0);
     let Parts { background, conditions, buffers, team, .. } = world;
@@ -116,6 +120,25 @@ fn sort<const D: usize>(world: &mut Parts<D>) -> Result<()> {
     let Parts { bodies, background, method, buffers, freshness, team, .. } = world;
     check_radii(bodies, &method.options)?;
     locate(bodies, background, &method.options, &mut buffers.sorting, freshness, team)
+}
+
+/// Makes room for all that the stages after the sort need: they cannot stop for want of memory.
+fn make_room<const D: usize>(world: &mut Parts<D>) -> Result<()> {
+    let Parts { bodies, background, method, conditions, buffers, team, .. } = world;
+    buffers.filtering.make_room(method, &background.nodes)?;
+    buffers.patches.make_room::<D>(bodies, &background.blocks)?;
+    let impulses = conditions.walls.len() * background.blocks.keys().len();
+    reserve_exact(&mut buffers.impulses, impulses, "the impulses of walls")?;
+    let room = pass::room(bodies, background, method);
+    if !team.is_together() {
+        return scratch::make_room(room);
+    }
+    let all = buffers.room.or(room);
+    if all != buffers.room {
+        team.on_each_thread(|| scratch::make_room(all))?;
+        buffers.room = all;
+    }
+    Ok(())
 }
 
 /// Maps mass, momentum and force to the grid, with the loads of the time `at` [s].

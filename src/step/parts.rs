@@ -17,6 +17,7 @@ use crate::background::key::split_node;
 use crate::background::{Background, GridPolicy, Key, Space};
 use crate::boundary::Conditions;
 use crate::error::{Place, Result};
+use crate::material::scratch::Room;
 use crate::memory::reserve;
 use crate::parallel::Team;
 use crate::particles::Body;
@@ -64,6 +65,8 @@ pub struct Buffers<const D: usize> {
     pub start: Start,
     /// Momentum that walls gave to the nodes of each block.
     pub impulses: Vec<[f64; 3]>,
+    /// Room that all threads of the team have made, as far as they have worked together.
+    pub room: Room,
 }
 
 /// Hooks of Rust callers.
@@ -149,6 +152,9 @@ impl<const D: usize> Parts<D> {
 
     /// The stable time step [s]; infinity without particles.
     pub fn stable_dt(&self) -> Result<f64> {
+        if self.particle_count() == 0 {
+            return Ok(f64::INFINITY);
+        }
         let limits = self.limits()?;
         Ok(stable_dt(&limits, &self.method.options, &self.conditions, self.clock.time))
     }

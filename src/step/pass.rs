@@ -8,9 +8,9 @@ use super::update_strain::update_strain;
 use super::update_stress::{Answer, Failure, Outcome, update_stress};
 use crate::background::{Background, TileNode};
 use crate::material::Material;
-use crate::material::scratch::{Carried, Points, Scratch, with_buffers};
+use crate::material::scratch::{Carried, Points, Room, Scratch, with_buffers};
 use crate::parallel::Team;
-use crate::particles::{Body, ChunkMut};
+use crate::particles::{Body, ChunkMut, Layout};
 use crate::shape::ShapeKind;
 use crate::shape::stencil::ShapeFunction;
 
@@ -102,10 +102,7 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
         }
         let Body { id, material, particles, runs, .. } = body;
         let (ids, all) = particles.ids_and_chunk();
-        let carried = Carried {
-            deformation_gradient: all.layout.deformation_gradient.is_some(),
-            sizes: if method.options.shape == ShapeKind::ContiguousGimp { D } else { 0 },
-        };
+        let carried = carried::<D>(&all.layout, method);
         let on_task = |task: ChunkMut<'_>| {
             with_buffers(tile_nodes, |points: &mut Points, tile| {
                 let mut of_task = Outcome::default();
@@ -123,6 +120,26 @@ pub fn pass<S: ShapeFunction<N>, const N: usize, const D: usize>(
         outcome.add(team.fold(all, &on_task, &Outcome::merge));
     }
     outcome
+}
+
+/// What the particles of a body carry beside what their model asks for.
+fn carried<const D: usize>(layout: &Layout, method: &Method<D>) -> Carried {
+    Carried {
+        deformation_gradient: layout.deformation_gradient.is_some(),
+        sizes: if method.options.shape == ShapeKind::ContiguousGimp { D } else { 0 },
+    }
+}
+
+/// The room that a thread needs in a pass over all bodies.
+pub fn room<const D: usize>(
+    bodies: &[Body],
+    background: &Background<D>,
+    method: &Method<D>,
+) -> Room {
+    let tile_nodes = background.tiles.tile_nodes(D);
+    let of =
+        |body: &Body| Room::of(&body.material, carried(&body.particles.layout, method), tile_nodes);
+    bodies.iter().map(of).fold(Room::default(), Room::or)
 }
 
 /// The stages of a pass that do not depend on the shape function.

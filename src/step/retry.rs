@@ -19,6 +19,7 @@ pub struct Start {
 
 /// Copies the columns of all particles, and the forces of conditions.
 pub fn save_start(bodies: &[Body], conditions: &mut Conditions, start: &mut Start) -> Result<()> {
+    reserve(&mut start.columns, bodies.len(), "the start of a step")?;
     start.columns.resize_with(bodies.len(), Vec::new);
     for (body, columns) in bodies.iter().zip(&mut start.columns) {
         body.particles.copy_columns(columns)?;

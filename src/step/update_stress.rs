@@ -8,25 +8,20 @@ use super::time_step::Limits;
 use crate::error::{Error, Place, Status};
 use crate::material::{Capsule, Occasion, StressBatch};
 
-/// Why a step failed, and the call of the model at the point where it did, if there is one.
+/// Why a step failed, and the call of the model at the point where it did, if a point did.
 #[derive(Debug)]
 pub struct Failure {
     /// Why.
     pub error: Error,
-    /// The call.
+    /// Whether a point failed, so that a smaller step may go.
+    pub of_a_point: bool,
+    /// The call, if there was memory for it.
     pub capsule: Option<Capsule>,
-}
-
-impl Failure {
-    /// Whether a point failed in the step, so that a smaller one may go.
-    pub fn is_of_a_point(&self) -> bool {
-        self.capsule.is_some()
-    }
 }
 
 impl From<Error> for Box<Failure> {
     fn from(error: Error) -> Self {
-        Self::new(Failure { error, capsule: None })
+        Self::new(Failure { error, of_a_point: false, capsule: None })
     }
 }
 
@@ -201,6 +196,6 @@ pub(super) fn fault<const D: usize>(
     );
     let place = Place { body: Some(body), particle: Some(particle), ..Place::default() };
     let occasion = Occasion { body, particle, step, time, dt };
-    let capsule = Capsule::of_point(work.material, &work.scratch, k, occasion);
-    Box::new(Failure { error: Error::new(status, text).at(place), capsule: Some(capsule) })
+    let capsule = Capsule::of_point(work.material, &work.scratch, k, occasion).ok();
+    Box::new(Failure { error: Error::new(status, text).at(place), of_a_point: true, capsule })
 }

@@ -157,7 +157,7 @@ impl<const D: usize> Parts<D> {
         }
         let new = Layout::new(&self.carrier(&body.material, on));
         let pairs = body.particles.layout.shared_with(&new, D);
-        let particles = body.particles.with_layout(new, &pairs)?;
+        let particles = body.particles.with_layout(new, pairs)?;
         self.bodies[at].particles = particles;
         Ok(())
     }
@@ -170,6 +170,7 @@ impl<const D: usize> Parts<D> {
         self.check_particles(&body)?;
         init_state(&mut body, self.method.options.spacing)?;
         self.check_particles(&body)?;
+        reserve(&mut self.bodies, 1, "the bodies")?;
         self.bodies.push(body);
         self.particles_changed();
         Ok(())

@@ -21,7 +21,7 @@ impl World {
 
     /// Adds a checked condition of any kind and gives its id.
     pub fn add_condition<C: Listed>(&mut self, condition: C) -> Result<i64> {
-        Ok(C::list_mut(self.conditions_mut()?).add(condition))
+        C::list_mut(self.conditions_mut()?).add(condition)
     }
 
     /// Removes a condition.
@@ -59,7 +59,7 @@ impl World {
         wall.check(self.options().dimension)?;
         on!(&mut self, s => {
             s.check_wall(wall)?;
-            let id = s.conditions.walls.add(*wall);
+            let id = s.conditions.walls.add(*wall)?;
             s.walls_changed();
             Ok(id)
         })
@@ -104,8 +104,9 @@ impl World {
         on!(&mut self, s => {
             let axisymmetric = s.method.options.axisymmetric;
             let surface = s.with_surface(&load, axisymmetric)?;
+            let id = s.conditions.tractions.add(Loaded { load, surface, applied: [0.0; 3] })?;
             s.freshness.loads_changed();
-            Ok(s.conditions.tractions.add(Loaded { load, surface, applied: [0.0; 3] }))
+            Ok(id)
         })
     }
 

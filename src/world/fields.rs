@@ -1,6 +1,7 @@
 //! Access to particle fields by name.
 
 use crate::error::{Error, Result, Status};
+use crate::memory::reserve;
 use crate::particles::{Body, FieldInfo};
 use crate::step::parts::Parts;
 
@@ -25,6 +26,8 @@ pub struct FieldSlice<'a> {
 pub struct FieldSliceMut<'a> {
     /// The doubles, with the padding between components.
     pub data: &'a mut [f64],
+    /// Ids of the particles in storage order.
+    pub ids: &'a [i64],
     /// Number of particles.
     pub count: usize,
     /// Number of components.
@@ -35,29 +38,29 @@ pub struct FieldSliceMut<'a> {
 
 /// The fields of a body with their first columns: those of the engine, then the state variables of
 /// the model.
-fn fields_of(body: &Body, dimension: usize) -> Vec<(FieldInfo, usize)> {
+fn fields_of(body: &Body, dimension: usize) -> impl Iterator<Item = (FieldInfo, usize)> {
     let layout = &body.particles.layout;
-    let mut list = layout.fields(dimension);
     let mut first = layout.state.first;
-    for state in &body.material.model().states {
+    let states = body.material.model().states.iter().map(move |state| {
+        let components = state.kind.components();
+        first += components;
         let info = FieldInfo {
             name: state.key_c,
             unit: state.unit_c,
             description: state.description_c,
-            components: state.kind.components(),
+            components,
             writable: true,
         };
-        list.push((info, first));
-        first += state.kind.components();
-    }
-    list
+        (info, first - components)
+    });
+    layout.fields(dimension).into_iter().chain(states)
 }
 
 fn find<const D: usize>(state: &Parts<D>, body: i64, name: &str) -> Result<(FieldInfo, usize)> {
-    let fields = fields_of(state.body(body)?, D);
-    let found = fields.iter().find(|(info, _)| info.name.to_bytes() == name.as_bytes());
-    found.copied().ok_or_else(|| {
-        let names = fields.iter().filter_map(|(info, _)| info.name.to_str().ok());
+    let body = state.body(body)?;
+    let found = fields_of(body, D).find(|(info, _)| info.name.to_bytes() == name.as_bytes());
+    found.ok_or_else(|| {
+        let names = fields_of(body, D).filter_map(|(info, _)| info.name.to_str().ok());
         Error::unknown_name("particle field", name, names)
     })
 }
@@ -66,8 +69,13 @@ impl World {
     /// The fields of a body.
     pub fn fields(&self, body: i64) -> Result<Vec<FieldInfo>> {
         on!(&self, s => {
-            let fields = fields_of(s.body(body)?, s.method.options.dimension);
-            Ok(fields.into_iter().map(|(info, _)| info).collect())
+            let body = s.body(body)?;
+            let mut fields = Vec::new();
+            for (info, _) in fields_of(body, s.method.options.dimension) {
+                reserve(&mut fields, 1, "the fields of a body")?;
+                fields.push(info);
+            }
+            Ok(fields)
         })
     }
 
@@ -111,12 +119,9 @@ impl World {
             let at = s.body_position(body)?;
             s.bodies[at].stress_given |= field == "stress";
             let particles = &mut s.bodies[at].particles;
-            Ok(FieldSliceMut {
-                count: particles.len(),
-                components: info.components,
-                stride: particles.stride(),
-                data: particles.columns_mut(first, info.components),
-            })
+            let (count, stride) = (particles.len(), particles.stride());
+            let (ids, data) = particles.ids_and_columns_mut(first, info.components);
+            Ok(FieldSliceMut { data, ids, count, components: info.components, stride })
         })
     }
 
@@ -151,11 +156,10 @@ impl World {
                 }
             }
         }
-        let ids = self.ids(body)?.to_vec();
         let slice = self.field_data_mut(body, field)?;
-        for (k, id) in ids.into_iter().enumerate() {
+        for (k, id) in slice.ids.iter().enumerate() {
             for c in 0..slice.components {
-                slice.data[c * slice.stride + k] = data.get(c, id as usize);
+                slice.data[c * slice.stride + k] = data.get(c, *id as usize);
             }
         }
         Ok(())

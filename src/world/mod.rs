@@ -150,7 +150,17 @@ impl World {
 
     /// Ids of the bodies, ascending.
     pub fn bodies(&self) -> Vec<i64> {
-        on!(&self, s => s.bodies.iter().map(|b| b.id).collect())
+        (0..self.body_count()).map(|place| self.body_id(place)).collect()
+    }
+
+    /// Number of bodies.
+    pub fn body_count(&self) -> usize {
+        on!(&self, s => s.bodies.len())
+    }
+
+    /// Id of the body at a place, 0 to [`World::body_count`] - 1, in the order of ids.
+    pub fn body_id(&self, place: usize) -> i64 {
+        on!(&self, s => s.bodies[place].id)
     }
 
     /// Number of particles of a body.
@@ -316,7 +326,7 @@ impl World {
     /// The error of a failure; the call that failed is written to a file if the host asked for
     /// that.
     fn error_of(&self, failure: Failure) -> Error {
-        let Failure { mut error, capsule } = failure;
+        let Failure { mut error, capsule, .. } = failure;
         if let Some(capsule) = capsule {
             error.message.push_str(&write_capsule(&self.context, capsule));
         }
@@ -426,14 +436,18 @@ impl World {
 
     /// Integer coordinates of the active blocks; z is 0 in two dimensions.
     pub fn grid_blocks(&self) -> Vec<[i64; 3]> {
+        let blocks = on!(&self, s => s.background.blocks.order().len());
+        (0..blocks).map(|place| self.grid_block(place)).collect()
+    }
+
+    /// Integer coordinates of the active block at a place in block order.
+    pub fn grid_block(&self, place: usize) -> [i64; 3] {
         on!(&self, s => {
             let blocks = &s.background.blocks;
-            let keys = blocks.order().iter().map(|slot| blocks.keys()[*slot as usize]);
-            keys.map(|key| {
-                let mut out = [0; 3];
-                key.at.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
-                out
-            }).collect()
+            let key = blocks.keys()[blocks.order()[place] as usize];
+            let mut out = [0; 3];
+            key.at.iter().zip(&mut out).for_each(|(k, o)| *o = i64::from(*k));
+            out
         })
     }
 

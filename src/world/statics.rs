@@ -5,6 +5,7 @@ use crate::boundary::{Reaching, law::constrain};
 use crate::error::{Error, Result, Status};
 use crate::log::LogLevel;
 use crate::material::Kinematics;
+use crate::memory::collect;
 use crate::step::parts::Parts;
 
 use super::bodies::init_state;
@@ -324,13 +325,20 @@ impl<const D: usize> Parts<D> {
     fn start_anew(&mut self, at: usize, ground: Option<&Ground>) -> Result<Option<String>> {
         let layout = self.bodies[at].particles.layout;
         let ranges = [(layout.stress, 6), (layout.state.first, layout.state.count)];
-        let old = ranges.map(|(c, n)| self.bodies[at].particles.columns(c, n).to_vec());
+        let mut old = [Vec::new(), Vec::new()];
+        for ((c, n), old) in ranges.into_iter().zip(&mut old) {
+            let columns = self.bodies[at].particles.columns(c, n).iter().copied();
+            *old = collect(columns, "the old stress and state")?;
+        }
         if let Some(ground) = ground {
             self.set_ground_stress(at, ground);
         }
         let spacing = self.method.options.spacing;
         let warning = init_state(&mut self.bodies[at], spacing)
-            .map_err(|error| Error { status: Status::InvalidArgument, ..error })
+            .map_err(|error| match error.status {
+                Status::MaterialRefused => Error { status: Status::InvalidArgument, ..error },
+                _ => error,
+            })
             .and_then(|()| {
                 let body = &self.bodies[at];
                 let stressed = body.particles.columns(layout.stress, 6).iter().any(|s| *s != 0.0);

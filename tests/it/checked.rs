@@ -174,7 +174,9 @@ fn digest() -> String {
                 result.unwrap();
             }
             own.iter().for_each(|value| hash.write_u64(value.to_bits()));
-        });
+            Ok(())
+        })
+        .unwrap();
         assert_ne!(model.kinematics, Kinematics::VelocityGradient, "fill its gradients");
     }
     hash.finish().to_string()

@@ -63,8 +63,9 @@ fn updated_stress(
         }
         s.input(Input::Density).expect("the model wants it")[0] = density;
         material.update(&mut StressBatch { dt, ..s.batch() }).expect("the model works");
-        std::array::from_fn(|c| s.stress1[c * s.stride])
+        Ok(std::array::from_fn(|c| s.stress1[c * s.stride]))
     })
+    .expect("scratch")
 }
 
 /// Largest difference of two lists over the largest value of the second.

@@ -301,8 +301,8 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
  * Statuses. Functions return a lahar_status: 0: done; positive: refused, nothing has changed;
  * negative: the object is poisoned, it answers queries and can be freed. lahar_last_error_message gives
  * a text that says what was expected, what was received and what to do. Each function lists the statuses
- * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar. No function prints,
- * exits or aborts.
+ * that it returns; any may return LAHAR_ERROR_PANIC besides, for a defect of lahar, and
+ * LAHAR_ERROR_OUT_OF_MEMORY if not even 64 kB can be had. No function prints, exits or aborts.
  *
  * Handles. lahar_context, lahar_material, lahar_world and lahar_view are opaque. Functions that make an
  * object first set the handle to NULL, and to the object only if they succeed. Functions that free
@@ -311,8 +311,8 @@ const HOST_INTRODUCTION: &str = r#"/* lahar.h: the host interface of lahar, a ma
  * velocities and tractions have int64_t ids, which are never used again.
  *
  * Pointers must not be NULL unless the text says so. Arrays of the host are read or written only during
- * the call, except through views. Texts are NUL-terminated UTF-8. Texts that lahar returns by pointer are
- * static: they are valid until the process ends.
+ * the call, except through views. Texts are NUL-terminated UTF-8, of 4096 bytes at most. Texts that lahar
+ * returns by pointer are static: they are valid until the process ends.
  *
  * Structs begin with `struct_size`, their sizeof, so that fields can be added at the end. Structs that
  * have an init function are filled by it. In the others, which lahar fills, the host sets
