@@ -115,6 +115,12 @@ impl<const D: usize> Background<D> {
     }
 }
 
+/// About the memory that a block of `dimension` axes takes without its tiles [bytes]: its nodes, and
+/// its neighbours of both sides.
+pub const fn bytes_of_block(dimension: usize) -> usize {
+    3 * block_nodes(dimension) * size_of::<Record>() + 2 * size_of::<blocks::Neighbours>()
+}
+
 /// Numbers of the nodes of the block in a slot.
 pub fn nodes_of<const D: usize>(slot: usize) -> std::ops::Range<usize> {
     slot * block_nodes(D)..(slot + 1) * block_nodes(D)

@@ -2,9 +2,10 @@
 
 use super::order::StepOrder;
 use crate::background::space::FARTHEST;
-use crate::background::{GridPolicy, Space};
+use crate::background::{EDGE, GridPolicy, Space, bytes_of_block};
 use crate::boundary::Table;
 use crate::error::{Error, Result, Status};
+use crate::memory::ensure_free;
 use crate::shape::{ShapeKind, WallTreatment};
 use crate::transfer::{TransferKind, filter};
 use std::fmt::Display;
@@ -239,14 +240,16 @@ impl Options {
                     ["x", "y", "z"][d]
                 )));
             }
-            blocks *= (max - min) / (4.0 * self.spacing) + 2.0;
+            blocks *= (max - min) / (EDGE as f64 * self.spacing) + 2.0;
         }
         if blocks > MOST_BLOCKS {
             return Err(Error::invalid(format!(
                 "the static box would need {blocks:.2e} blocks, more than {MOST_BLOCKS:.0e}: use grid_policy dynamic"
             )));
         }
-        Ok(())
+        // before hours are spent on a part of it
+        let bytes = blocks * bytes_of_block(self.dimension) as f64;
+        ensure_free(bytes as usize, "the blocks of a static grid")
     }
 }
 

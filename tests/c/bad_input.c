@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static lahar_context *context;
@@ -58,6 +59,37 @@ static void wrong_struct_size(void) {
   result.totals.struct_size = sizeof result;
   OK(lahar_world_totals(world, LAHAR_ALL_BODIES, &result.totals));
   CHECK(result.newer == 0 && result.totals.struct_size == sizeof result && result.totals.particles > 0);
+}
+
+static void bad_texts(void) {
+  char text[5000];
+  int64_t index;
+  memset(text, 'x', sizeof text);
+  text[sizeof text - 1] = 0;
+  EXPECT(lahar_context_find_model(context, "a\nb\x1b[31m", &index), LAHAR_ERROR_UNKNOWN_NAME, "`a\\nb\\u{1b}[31m`");
+  EXPECT(lahar_context_find_model(context, "a\xff", &index), LAHAR_ERROR_INVALID_ARGUMENT, "is not UTF-8 after `a`");
+  EXPECT(lahar_context_find_model(context, text, &index), LAHAR_ERROR_INVALID_ARGUMENT, "has 4999 bytes; expected 4096");
+}
+
+static void static_grid_larger_than_memory(void) {
+  lahar_world_options options;
+  lahar_world *made = world;
+  time_t start = time(NULL);
+  OK(lahar_world_options_init(&options, sizeof options));
+  options.spacing = 1;
+  options.grid_policy = LAHAR_GRID_STATIC;
+  options.box_max[0] = options.box_max[1] = options.box_max[2] = 1800; /* 9e7 blocks of 6 kB */
+  EXPECT(lahar_world_create(context, &options, &made), LAHAR_ERROR_OUT_OF_MEMORY, "the blocks of a static grid");
+  CHECK(made == NULL && difftime(time(NULL), start) < 5);
+}
+
+static void stable_step_of_no_particles(void) {
+  lahar_world *empty = make_world(context); /* with gravity */
+  double stable = 0;
+  OK(lahar_world_stable_dt(empty, &stable));
+  CHECK(isinf(stable) && stable > 0);
+  EXPECT(lahar_world_step_auto(empty, NULL), LAHAR_ERROR_INVALID_ARGUMENT, "the stable step is infinite");
+  lahar_world_free(empty);
 }
 
 /* Adds three particles of which one value is bad. */
@@ -259,7 +291,7 @@ static int bodies_larger_than_memory(void) {
       OK(lahar_body_remove(world, id));
     } else {
       ++refused;
-      EXPECT(status, LAHAR_ERROR_OUT_OF_MEMORY, "GB");
+      EXPECT(status, LAHAR_ERROR_OUT_OF_MEMORY, "MB more");
       CHECK(id == -1);
     }
     after = take_picture(world);
@@ -533,6 +565,9 @@ int main(int argc, char **argv) {
   add_block(world, material, 1000);
   OK(lahar_world_step_auto(world, NULL));
   wrong_struct_size();
+  bad_texts();
+  static_grid_larger_than_memory();
+  stable_step_of_no_particles();
   bad_numbers();
   bad_polygons();
   bad_choices_and_counts();

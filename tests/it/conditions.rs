@@ -105,10 +105,14 @@ fn the_stable_step_knows_what_a_table_will_bring() {
     let mut world = world(&context, &options(ShapeKind::Linear, 1.0));
     let dt = |w: &World| w.stable_dt().expect("a step");
     assert!(dt(&world).is_infinite());
+    // waves of 4e-8 m/s do not limit the step
+    let soft = elastic(&context, 1e-12, 0.3);
+    fill(&mut world, &soft, &a_box([0.0; 3], [1.0; 3]), 1000.0, [0.0; 3]);
+    assert!(dt(&world) > 1e6);
     let sudden = table(&[10.0, 10.0 + 1e-9], &[[0.0; 3], [0.0, -1000.0, 0.0]]);
     world.set_gravity_table(Some(sudden)).expect("a good table");
     // with nothing else to limit the step, the gravity that comes counts: g dt² <= cfl h
-    assert!((dt(&world) - (0.4f64 / 1000.0).sqrt()).abs() < 1e-12, "{}", dt(&world));
+    assert!((dt(&world) - (0.4f64 / 1000.0).sqrt()).abs() < 1e-9, "{}", dt(&world));
     world.set_gravity([0.0; 3]).expect("finite");
     let push = PrescribedVelocity {
         region: EVERYWHERE,
