@@ -1905,6 +1905,10 @@ lahar_status lahar_world_totals(const lahar_world *world, int64_t body, lahar_to
 
 // Writes all particles with all their fields to a VTP file (XML, compressed) for ParaView.
 //
+// Points are in the order of bodies and ids, whatever order they are stored in: point k of two
+// files is the same particle as long as no body came or went. The time [s] is the field data
+// `TimeValue`.
+//
 // `path`: NUL-terminated, UTF-8, ends in `.vtp`. The file is written under a temporary name and
 // then renamed, so that an existing file is replaced as a whole or not at all.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (a text that is too long or not
