@@ -744,7 +744,8 @@ typedef struct lahar_world_options {
     double damping;
     // Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     double box_min[3];
-    // Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    // Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3]. Particles on the faces are inside,
+    // and so are those that round-off, 1e-9 of the spacing, put beside them.
     double box_max[3];
     // One of LAHAR_WALLS_*.
     int32_t wall_treatment;

@@ -62,7 +62,8 @@ pub struct lahar_world_options {
     pub damping: f64,
     /// Lower corner of the box of LAHAR_GRID_STATIC [m], shape [3].
     pub box_min: [f64; 3],
-    /// Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3].
+    /// Upper corner of the box of LAHAR_GRID_STATIC [m], shape [3]. Particles on the faces are inside,
+    /// and so are those that round-off, 1e-9 of the spacing, put beside them.
     pub box_max: [f64; 3],
     /// One of LAHAR_WALLS_*.
     pub wall_treatment: i32,

@@ -229,10 +229,7 @@ fn mark_moved<const D: usize>(
     options: &Options,
     team: &Team,
 ) {
-    let limits = match options.grid_policy {
-        GridPolicy::Static => Some((options.box_min, options.box_max)),
-        _ => None,
-    };
+    let limits = options.limits();
     let Background { space, blocks, .. } = background;
     for body in bodies {
         let Body { particles, runs, .. } = body;
@@ -255,7 +252,7 @@ fn sure_inside<const D: usize>(
     blocks: &Blocks<D>,
     space: &Space<D>,
     slot: u32,
-    limits: Option<([f64; 3], [f64; 3])>,
+    limits: Option<[[f64; 3]; 2]>,
 ) -> ([f64; D], [f64; D]) {
     let key = blocks.keys()[slot as usize];
     let (mut low, mut high) = ([0.0; D], [0.0; D]);
@@ -270,7 +267,7 @@ fn sure_inside<const D: usize>(
         // next to a wall, stencils begin elsewhere
         let [wall, far] = space.fits[d].nodes.map(|node| space.node_position(d, node));
         (low[d], high[d]) = (low[d].max(wall + space.spacing), high[d].min(far - space.spacing));
-        if let Some((min, max)) = limits {
+        if let Some([min, max]) = limits {
             (low[d], high[d]) = (low[d].max(min[d]), high[d].min(max[d]));
         }
     }

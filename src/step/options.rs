@@ -87,6 +87,9 @@ const FILTER_ORDER: i32 = 2;
 /// Most retries of a step; each at least halves it or takes what the material requests.
 const MOST_RETRIES: i32 = 20;
 
+/// How far outside the box of a static grid a particle counts as on its face, in cells.
+const FACE: f64 = 1e-9;
+
 /// Most blocks of a static grid.
 const MOST_BLOCKS: f64 = 1e8;
 
@@ -186,10 +189,18 @@ impl Options {
         Space::new(self.spacing, origin, self.shape.first_offset(), reach)
     }
 
+    /// Corners of the box of a static grid [m], moved out by round-off: particles on its faces are
+    /// inside, on whichever side of a face a step puts them.
+    pub fn limits(&self) -> Option<[[f64; 3]; 2]> {
+        let out = |x: f64| FACE * self.spacing + 4.0 * f64::EPSILON * x.abs();
+        (self.grid_policy == GridPolicy::Static)
+            .then(|| [self.box_min.map(|x| x - out(x)), self.box_max.map(|x| x + out(x))])
+    }
+
     /// Whether a position lies in the box of a static grid; true for other grids.
     pub fn holds<const D: usize>(&self, x: &[f64; D]) -> bool {
-        let (min, max) = (&self.box_min, &self.box_max);
-        self.grid_policy != GridPolicy::Static || (0..D).all(|d| min[d] <= x[d] && x[d] <= max[d])
+        let inside = |[min, max]: [[f64; 3]; 2]| (0..D).all(|d| min[d] <= x[d] && x[d] <= max[d]);
+        self.limits().is_none_or(inside)
     }
 
     /// Gravity must be finite, and along the axis in axial symmetry.

@@ -14,7 +14,7 @@ use super::pass::Stopwatch;
 use super::retry::Start;
 use super::time_step::{Limits, limits_of_state, stable_dt};
 use crate::background::key::split_node;
-use crate::background::{Background, GridPolicy, Key, Space};
+use crate::background::{Background, Key, Space};
 use crate::boundary::Conditions;
 use crate::error::{Place, Result};
 use crate::material::scratch::Room;
@@ -107,8 +107,8 @@ impl<const D: usize> Parts<D> {
     pub fn new(options: Options, isa: Isa, team: Team) -> Result<Self> {
         let space = options.space();
         let mut background = Background::new(space, options.shape.nodes());
-        if options.grid_policy == GridPolicy::Static {
-            background.set_owners(&blocks_of_box(&options, &space)?, false)?;
+        if let Some(limits) = options.limits() {
+            background.set_owners(&blocks_of_box(limits, &options, &space)?, false)?;
             background.blocks.no_change();
         }
         let kernels = Kernels::new(&options, false);
@@ -183,14 +183,18 @@ pub fn particle_count(bodies: &[Body]) -> usize {
     bodies.iter().map(|b| b.particles.len()).sum()
 }
 
-/// Blocks that particles in the box of a static grid may stand in.
-fn blocks_of_box<const D: usize>(options: &Options, space: &Space<D>) -> Result<Vec<Key<D>>> {
+/// Blocks that particles within the limits of a static grid may stand in.
+fn blocks_of_box<const D: usize>(
+    [min, max]: [[f64; 3]; 2],
+    options: &Options,
+    space: &Space<D>,
+) -> Result<Vec<Key<D>>> {
     let margin = f64::from(options.wall_treatment == WallTreatment::Modified); // of walls to come
     let block = |corner: [f64; 3], margin: f64| -> [i64; D] {
         let xi = space.to_units(std::array::from_fn(|d| corner[d]));
         xi.map(|x| split_node((x - space.first_offset + margin).floor() as i64).0)
     };
-    let (low, high) = (block(options.box_min, -margin), block(options.box_max, margin));
+    let (low, high) = (block(min, -margin), block(max, margin));
     let count: [i64; D] = std::array::from_fn(|d| high[d] - low[d] + 1);
     let all: i64 = count.iter().product();
     let mut blocks = Vec::new();

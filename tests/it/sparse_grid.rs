@@ -5,12 +5,13 @@ use lahar::background::GridPolicy;
 use lahar::boundary::{Wall, WallKind};
 use lahar::error::Status;
 use lahar::particles::seeding::Region;
+use lahar::shape::{ShapeKind, WallTreatment};
 use lahar::step::StepOrder;
 use lahar::transfer::TransferKind;
 use lahar::world::World;
 use lahar::world::options::Options;
 
-use crate::setup::{a_box, context, elastic, fill, read, world};
+use crate::setup::{a_box, add_points, context, elastic, fill, read, world};
 
 fn bits(world: &World, fields: &[&str]) -> Vec<u64> {
     let all = fields.iter().flat_map(|f| read(world, 0, f));
@@ -80,6 +81,54 @@ fn leaving_a_static_box_is_an_error_that_changes_nothing() {
     let (time, before) = (world.time(), bits(&world, &["position"]));
     assert_eq!(world.step(None).expect_err("still outside").status, Status::OutsideGrid);
     assert_eq!((time, before), (world.time(), bits(&world, &["position"])));
+}
+
+#[test]
+fn particles_on_the_faces_of_a_static_box_are_inside_and_those_beyond_round_off_are_not() {
+    let context = context(1);
+    let material = elastic(&context, 1e5, 0.3);
+    // off zero, so that faces are no exact doubles, and with faces on the edges of blocks and off
+    for (shape, low) in [(ShapeKind::Linear, 0.0), (ShapeKind::QuadraticBspline, 1234.6)] {
+        let h = 0.1;
+        let (box_min, box_max) = ([low, low, 0.0], [low + 8.0 * h, low + 9.0 * h, 0.0]);
+        let options = Options {
+            dimension: 2,
+            spacing: h,
+            shape,
+            transfer: TransferKind::PicFlip,
+            gravity: [0.0, -9.81, 0.0],
+            grid_policy: GridPolicy::Static,
+            wall_treatment: WallTreatment::Modified,
+            box_min,
+            box_max,
+            ..Options::default()
+        };
+        let mut world = world(&context, &options);
+        for (axis, side) in [(0, 1), (0, -1), (1, 1), (1, -1)] {
+            let position = if side > 0 { box_min[axis] } else { box_max[axis] };
+            let wall = Wall { axis, side, position, kind: WallKind::Sticky, friction: 0.0 };
+            world.add_wall(&wall).expect("a good wall");
+        }
+        let points = |out: f64| -> Vec<f64> {
+            let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
+            let at = |i: usize, d: usize| {
+                if i == 0 { box_min[d] - out } else { box_max[d] + out }
+            };
+            corners.iter().flat_map(|c| [at(c[0], 0), at(c[1], 1)]).collect()
+        };
+        let beside = f64::EPSILON * box_max[1];
+        for x in [points(0.0), points(beside)] {
+            add_points(&mut world, &material, (&x, &[0.0; 8]), 0.1 * h * h, 1000.0);
+        }
+        world.advance(1.0, 100).1.expect("steps on the faces");
+        let mut moved = read(&world, 0, "position");
+        for (out, refused) in [(beside, false), (1e-6 * h, true)] {
+            moved.copy_from_slice(&points(out));
+            crate::setup::write(&mut world, 0, "position", &moved);
+            let status = world.step(None).map_err(|error| error.status);
+            assert_eq!(status.is_err(), refused, "{shape:?}, {out:e} m outside: {status:?}");
+        }
+    }
 }
 
 /// Stresses of a squeezed block after 200 steps, started `offset` cells away from the origin of the
