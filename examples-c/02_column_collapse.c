@@ -132,6 +132,7 @@ static void collapse(const settings *s, const column *c, int write_frames) {
             snprintf(path, sizeof path, "%s/frame_%d.vtp", s->frames, frame);
             check(lahar_world_write_vtp(c->world, path));
             printf("frame_%d_time = %.17g\n", frame++, time);
+            fflush(stdout); /* so that who waits sees it */
         }
         if (time >= c->end_time || step == s->max_steps) return;
         check(lahar_world_stable_dt(c->world, &stable));

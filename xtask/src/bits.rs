@@ -8,7 +8,6 @@
 //! The sums depend on the processor only through its instruction sets: those that it lacks are
 //! passed over.
 
-use crate::{process, setup};
 use lahar::boundary::{BoxRegion, PrescribedVelocity, Table, Traction, Wall, WallKind};
 use lahar::context::Context;
 use lahar::error::Result;
@@ -22,6 +21,7 @@ use lahar::world::World;
 use lahar::world::options::Options;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use xtask_front::{process, setup};
 
 const FILE: &str = "benches/bits.json";
 const STEPS: usize = 100;

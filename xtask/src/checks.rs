@@ -1,16 +1,7 @@
-//! `cargo xtask test`, `ci` and `headers`.
+//! `cargo xtask ci` and `headers`.
 
-use crate::{bits, fortran, headers, instructions, process, setup};
-
-/// Every test, on the release profile: the drivers and the plugins come from the same build.
-///
-/// The documentation's examples run first, so that the last lines are the summary of nextest.
-pub fn test() -> Result<(), String> {
-    setup::run(setup::Need::Tests)?;
-    process::cargo(&["build", "--release", "--workspace"])?;
-    process::cargo(&["test", "--doc", "--release", "--workspace"])?;
-    process::cargo(&["nextest", "run", "--release", "--workspace", "--no-fail-fast"])
-}
+use crate::{bits, fortran, headers, instructions};
+use xtask_front::{process, setup, test};
 
 /// What runs on every change.
 pub fn ci() -> Result<(), String> {
@@ -28,7 +19,7 @@ pub fn ci() -> Result<(), String> {
     headers(true)?;
     bits::run(false, false)?;
     instructions::run(false)?;
-    test()
+    test::run()
 }
 
 /// The C headers, then the Fortran bindings that are made from them.

@@ -11,10 +11,10 @@
 //! more, or that costs less, `--write` makes a new baseline.
 
 use crate::bench::scenes::{SCENES, Scene};
-use crate::{process, setup};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::process::{Command, Stdio};
+use xtask_front::{process, setup};
 
 const BASELINE: &str = "benches/instructions.json";
 const PATHS: [&str; 2] = ["scalar", "avx2"];

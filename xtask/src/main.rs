@@ -1,4 +1,5 @@
-//! The tasks of the repository: `cargo xtask <task>`.
+//! The tasks of `cargo xtask <task>` that need the engine, or crates for reports and plots; the package
+//! `xtask-front` starts them, and has the others.
 //!
 //! Each task is one file. A task returns the text of what went wrong; the process then ends with
 //! status 1.
@@ -7,13 +8,9 @@
 mod bench;
 mod bits;
 mod checks;
-mod demo;
 mod fortran;
 mod headers;
 mod instructions;
-mod picture;
-mod process;
-mod setup;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -28,12 +25,6 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Finds what is missing on Debian 12 and installs it, or prints the line that does
-    Setup,
-    /// Builds lahar, runs a sand column collapse from C and draws it
-    Demo,
-    /// Builds the workspace and runs every test
-    Test,
     /// Formatting, lints, headers, bits, counts of instructions, then every test
     Ci,
     /// Writes the C headers and the Fortran bindings from the Rust sources
@@ -65,9 +56,6 @@ enum Task {
 
 fn main() -> ExitCode {
     let result = match Cli::parse().task {
-        Task::Setup => setup::run(setup::Need::Tests),
-        Task::Demo => demo::run(),
-        Task::Test => checks::test(),
         Task::Ci => checks::ci(),
         Task::Headers { check } => checks::headers(check),
         Task::Instructions { write } => instructions::run(write),
@@ -81,5 +69,20 @@ fn main() -> ExitCode {
             eprintln!("xtask: {message}");
             ExitCode::FAILURE
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_front_knows_every_task() {
+        let command = Cli::command();
+        let here: Vec<&str> = command.get_subcommands().map(|task| task.get_name()).collect();
+        let front = xtask_front::TASKS.map(|(name, _)| name);
+        assert_eq!(front[..3], ["setup", "demo", "test"]);
+        assert_eq!(front[3..], here);
     }
 }

@@ -1,8 +1,8 @@
 //! What was measured on: date, commit, processor and how busy it was, for the heading of a table.
 
-use crate::process;
 use std::fmt;
 use std::process::{Command, Stdio};
+use xtask_front::process;
 
 /// The heading of a run.
 pub struct Machine {

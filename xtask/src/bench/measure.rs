@@ -6,12 +6,12 @@
 
 use super::scenes::Scene;
 use super::stages;
-use crate::process;
 use lahar::context::Context;
 use lahar::world::World;
 use serde_json::json;
 use std::io::{BufRead, Write};
 use std::time::Instant;
+use xtask_front::process;
 
 /// Builds the scene and obeys until the end of the input. `dt` [s] is the length of the steps, the stable one if not given.
 pub fn serve(

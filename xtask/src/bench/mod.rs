@@ -19,12 +19,12 @@ mod worker;
 
 pub use machine::Machine;
 
-use crate::process;
 use bandwidth::Bandwidth;
 use rounds::{Case, Row};
 use scenes::{APIC_ELASTIC, FAR, LINKED, SCENES, Scene};
 use std::path::PathBuf;
 use stick::Stick;
+use xtask_front::process;
 
 /// What `bench` takes.
 #[derive(clap::Args)]

@@ -9,12 +9,12 @@ use super::scenes::{FLIGHT, read_points};
 use super::targets::{Check, Verdict, at_least, at_most};
 use super::worker::Worker;
 use super::{Arguments, Machine, report};
-use crate::process;
 use lahar::context::Context;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xtask_front::process;
 
 /// Programs that the engine can be compared with.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -4,8 +4,8 @@ use super::machine::Machine;
 use super::rounds::Row;
 use super::stages::STAGES;
 use super::targets::{Check, Verdict};
-use crate::process;
 use std::fmt::Write as _;
+use xtask_front::process;
 
 /// The figures of every row, and the shares of the stages below.
 pub fn rows(rows: &[Row]) -> String {

@@ -1,9 +1,9 @@
 //! A measuring stick: an outside program that steps something comparable, timed in turns with the first scene.
 
 use super::rounds::median;
-use crate::process;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xtask_front::process;
 
 /// A built stick and what it printed so far.
 pub struct Stick {

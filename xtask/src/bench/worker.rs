@@ -1,10 +1,10 @@
 //! Processes that are timed in turns: this program with one world, or a peer. See `measure` for what they understand.
 
 use super::scenes::Scene;
-use crate::process;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use xtask_front::process;
 
 /// A process that waits for commands.
 pub struct Worker {

@@ -7,8 +7,8 @@
 mod declarations;
 mod module;
 
-use crate::process;
 use declarations::Header;
+use xtask_front::process;
 
 /// Headers, and the modules that are made from them.
 const MODULES: [(&str, &str); 2] = [

@@ -8,10 +8,10 @@ mod report;
 mod store;
 
 use crate::bench::Machine;
-use crate::process;
 use clap::Args;
 use lahar_verification::case::{self, Case};
 use lahar_verification::{judge, run};
+use xtask_front::process;
 
 /// Arguments of `verify`.
 #[derive(Args)]

@@ -5,7 +5,7 @@ use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
 use super::store::{Kept, folder};
-use crate::picture::{FONT, register_font};
+use lahar_picture::{FONT, register_font};
 
 const SIZE: (u32, u32) = (960, 400);
 const LEGEND: u32 = 300; // pixels at the right

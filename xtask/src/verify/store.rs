@@ -1,11 +1,11 @@
 //! What the runs gave, kept in `docs/verification/<case>.json`.
 
-use crate::process;
 use lahar_verification::case::Case;
 use lahar_verification::run::{Done, Outcome};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::PathBuf;
+use xtask_front::process;
 
 /// What is kept of a case.
 #[derive(Clone, Default, Serialize, Deserialize)]

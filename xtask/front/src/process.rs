@@ -1,24 +1,24 @@
 //! Running other programs, and the folders of the repository and the build.
 
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Folder of the repository.
+/// Folder of the repository: the one with Cargo.lock above the package that cargo started.
 pub fn root() -> PathBuf {
-    let xtask = std::env::var("CARGO_MANIFEST_DIR")
+    let package = std::env::var("CARGO_MANIFEST_DIR")
         .map_or_else(|_| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
-    xtask.parent().map_or_else(|| PathBuf::from("."), Path::to_path_buf)
+    let found = package.ancestors().find(|folder| folder.join("Cargo.lock").exists());
+    found.map_or_else(|| PathBuf::from("."), Path::to_path_buf)
 }
 
-/// Folder of the release build: where this program itself stands, so `CARGO_TARGET_DIR` is
+/// Folder of the release build: where this program itself is, so `CARGO_TARGET_DIR` is
 /// honoured.
 pub fn release_folder() -> Result<PathBuf, String> {
     let exe = std::env::current_exe().map_err(|e| format!("cannot find the path of xtask: {e}"))?;
     exe.parent().map(Path::to_path_buf).ok_or_else(|| format!("{} has no folder", exe.display()))
 }
 
-/// This program, to be started once more. A build that ran meanwhile may have written it anew.
+/// The program of the package xtask, to be started once more. A build that ran meanwhile may have written it anew.
 pub fn this_program() -> Result<PathBuf, String> {
     Ok(release_folder()?.join("xtask"))
 }
@@ -54,26 +54,6 @@ pub fn output_of(command: &mut Command) -> Result<String, String> {
         return Err(format!("`{line}` ended with {}", output.status));
     }
     String::from_utf8(output.stdout).map_err(|e| format!("`{line}` printed no UTF-8: {e}"))
-}
-
-/// Runs a prepared command, shows each line of its standard output as it comes, and gives the whole
-/// of it.
-pub fn shown_output_of(command: &mut Command) -> Result<String, String> {
-    let line = shown(command);
-    eprintln!("$ {line}");
-    let mut child = command
-        .stdout(Stdio::piped())
-        .spawn()
-        .map_err(|e| format!("cannot start `{line}`: {e}"))?;
-    let mut text = String::new();
-    for printed in child.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines()) {
-        let printed = printed.map_err(|e| format!("cannot read from `{line}`: {e}"))?;
-        println!("{printed}");
-        text.push_str(&printed);
-        text.push('\n');
-    }
-    let status = child.wait().map_err(|e| format!("`{line}`: {e}"))?;
-    if status.success() { Ok(text) } else { Err(format!("`{line}` ended with {status}")) }
 }
 
 /// Whether a program starts and ends well, with its output thrown away.

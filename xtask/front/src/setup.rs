@@ -7,7 +7,7 @@ use crate::process::{self, succeeds};
 pub enum Need {
     /// A C compiler.
     Demo,
-    /// The C, C++ and Fortran compilers, valgrind, nextest, rustfmt and clippy.
+    /// The C, C++ and Fortran compilers, valgrind, rustfmt and clippy.
     Tests,
 }
 
@@ -41,7 +41,6 @@ pub fn run(need: Need) -> Result<(), String> {
     if need == Need::Tests {
         rust_component("rustfmt", "fmt")?;
         rust_component("clippy", "clippy")?;
-        nextest()?;
     }
     Ok(())
 }
@@ -99,12 +98,4 @@ fn rust_component(component: &str, subcommand: &str) -> Result<(), String> {
     process::run("rustup", &["component", "add", component]).map_err(|e| {
         format!("{e}; cargo {subcommand} is missing: install the component {component}")
     })
-}
-
-fn nextest() -> Result<(), String> {
-    if succeeds("cargo", &["nextest", "--version"]) {
-        return Ok(());
-    }
-    println!("missing: cargo-nextest (built from source once, a few minutes)");
-    process::run("cargo", &["install", "cargo-nextest", "--locked"])
 }

@@ -1,7 +1,7 @@
 //! Reads particle frames and draws them, coloured by speed.
 
 use plotters::prelude::*;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use vtkio::model::{Attribute, Attributes, DataSet, IOBuffer, PolyDataPiece};
 
 /// The particles of one instant.
@@ -38,41 +38,47 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// Reads `folder/*.vtp` in the order of their names.
-///
-/// `printed` is what the driver printed; its lines `<name of the file>_time = <t>` give the times
-/// of the frames.
-pub fn read_frames(folder: &Path, printed: &str) -> Result<Vec<Frame>, String> {
+/// Reads `folder/*.vtp` in the order of their times.
+pub fn read_frames(folder: &Path) -> Result<Vec<Frame>, String> {
     let listing = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut files: Vec<_> = listing
+    let files = listing
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "vtp"))
-        .collect();
-    files.sort();
-    if files.is_empty() {
-        return Err(format!("the driver wrote no .vtp file into {}", folder.display()));
+        .filter(|path| path.extension().is_some_and(|extension| extension == "vtp"));
+    let read = |file: PathBuf| read_frame(&file).map_err(|e| format!("{}: {e}", file.display()));
+    let mut frames = files.map(read).collect::<Result<Vec<_>, _>>()?;
+    if frames.is_empty() {
+        return Err(format!("there is no .vtp file in {}", folder.display()));
     }
-    files
-        .iter()
-        .map(|file| {
-            let name = file.file_stem().unwrap_or_default().to_string_lossy();
-            let time = value_of(printed, &format!("{name}_time"))
-                .ok_or_else(|| format!("the driver printed no line `{name}_time = ...`"))?;
-            read_frame(file, time).map_err(|e| format!("{}: {e}", file.display()))
-        })
-        .collect()
+    frames.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(frames)
 }
 
-/// The number of the line `name = number`.
-fn value_of(printed: &str, name: &str) -> Option<f64> {
-    printed.lines().find_map(|line| {
-        let (key, value) = line.split_once('=')?;
-        if key.trim() == name { value.trim().parse().ok() } else { None }
-    })
+/// At most `count` frames, evenly spread, the first and the last among them.
+pub fn spread(mut frames: Vec<Frame>, count: usize) -> Vec<Frame> {
+    let last = frames.len().saturating_sub(1);
+    if frames.len() <= count {
+        return frames;
+    }
+    let wanted: Vec<usize> = (0..count).map(|i| i * last / (count - 1)).collect();
+    let mut index = 0;
+    frames.retain(|_| {
+        index += 1;
+        wanted.contains(&(index - 1))
+    });
+    frames
 }
 
-fn read_frame(file: &Path, time: f64) -> Result<Frame, String> {
-    let vtk = vtkio::Vtk::import(file).map_err(|e| e.to_string())?;
+/// The field data `TimeValue`, which vtkio skips.
+fn time_of(text: &str) -> Option<f64> {
+    let (_, rest) = text.split_once("\"TimeValue\"")?;
+    let (_, rest) = rest.split_once('>')?;
+    rest.split('<').next()?.trim().parse().ok()
+}
+
+fn read_frame(file: &Path) -> Result<Frame, String> {
+    let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
+    let time = time_of(&text).ok_or("expected the time as field data `TimeValue`")?;
+    let vtk = vtkio::Vtk::parse_xml(text.as_bytes()).map_err(|e| e.to_string())?;
     let DataSet::PolyData { pieces, .. } = vtk.data else {
         return Err("expected PolyData".to_string());
     };
@@ -212,10 +218,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_is_found_by_its_whole_name() {
-        let printed = "a_001_time = 9\n a_00_time=0.25 \ntext";
-        assert_eq!(value_of(printed, "a_00_time"), Some(0.25));
-        assert_eq!(value_of(printed, "text"), None);
+    fn the_time_is_found() {
+        let text = "<DataArray Name=\"TimeValue\" format=\"ascii\">2.5e-1</DataArray>";
+        assert_eq!(time_of(text), Some(0.25));
+        assert_eq!(time_of("<DataArray Name=\"id\">1</DataArray>"), None);
+    }
+
+    #[test]
+    fn a_spread_keeps_the_first_and_the_last_frame() {
+        let frames = (0..11).map(|i| Frame { time: f64::from(i), ..Frame::default() }).collect();
+        let times: Vec<f64> = spread(frames, 6).iter().map(|frame| frame.time).collect();
+        assert_eq!(times, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
     }
 
     #[test]
