@@ -15,6 +15,24 @@ use std::sync::{Arc, PoisonError, RwLock};
 /// Largest number of threads of a context.
 pub const MAX_THREADS: usize = 1024;
 
+/// The plugins that come with lahar, with their models: for errors, nothing is loaded unasked.
+pub const SHIPPED: [(&str, &[&str]); 14] = [
+    ("lahar_drucker_prager", &["drucker_prager"]),
+    ("lahar_hencky", &["hencky"]),
+    ("lahar_ideal_gas", &["ideal_gas"]),
+    ("lahar_johnson_cook", &["johnson_cook"]),
+    ("lahar_linear_elastic", &["linear_elastic", "linear_elastic_green_naghdi"]),
+    ("lahar_matsuoka_nakai", &["matsuoka_nakai"]),
+    ("lahar_modified_cam_clay", &["modified_cam_clay"]),
+    ("lahar_mohr_coulomb", &["mohr_coulomb"]),
+    ("lahar_mu_i", &["mu_i"]),
+    ("lahar_neo_hookean", &["neo_hookean"]),
+    ("lahar_newtonian", &["newtonian", "tait_water"]),
+    ("lahar_nor_sand", &["nor_sand"]),
+    ("lahar_viscoplastic_fluids", &["bingham", "herschel_bulkley"]),
+    ("lahar_von_mises", &["von_mises"]),
+];
+
 /// Threads, log and loaded plugins. A context lives as long as one of its worlds or
 /// materials.
 pub struct Context {
@@ -194,8 +212,13 @@ impl Context {
         let models = self.models();
         models.iter().copied().find(|m| m.name == name).ok_or_else(|| {
             let mut error = Error::unknown_name("model", name, models.iter().map(|m| m.name));
-            if models.is_empty() {
-                error.message.push_str("; load a plugin first");
+            match SHIPPED.iter().find(|(_, models)| models.contains(&name)) {
+                Some((plugin, _)) => {
+                    let text = format!("; it comes with the plugin {plugin}: load that first");
+                    error.message.push_str(&text);
+                }
+                None if models.is_empty() => error.message.push_str("; load a plugin first"),
+                None => {}
             }
             error
         })

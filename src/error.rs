@@ -125,31 +125,28 @@ impl Error {
         Self::new(Status::InvalidArgument, message)
     }
 
-    /// An unknown name. The message has the name that was not found, the closest known name, and
-    /// all known names if they are few.
+    /// An unknown name. The message has the name that was not found, the known name that it means
+    /// or almost spells, and all known names if they are few.
     pub fn unknown_name<'a>(
         what: &str,
         name: &str,
-        known: impl IntoIterator<Item = &'a str>,
+        known: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
     ) -> Self {
-        let (mut count, mut few, mut closest) = (0, String::new(), None);
-        for known in known {
+        let known = known.into_iter();
+        let (mut count, mut few) = (0, String::new());
+        for known in known.clone() {
             count += 1;
             if count <= FEW {
                 few = few + if count == 1 { "" } else { ", " } + known;
             }
-            if name.len().max(known.len()) <= LONGEST_NAME {
-                let found = (strsim::damerau_levenshtein(known, name), known);
-                closest = Some(closest.map_or(found, |closest| found.min(closest)));
-            }
         }
-        let closest = closest.map_or(String::new(), |(_, k)| format!("; did you mean `{k}`?"));
+        let meant = meant(name, known).map_or(String::new(), |k| format!("; did you mean `{k}`?"));
         let list = match count {
             0 => " (none is known yet)".to_string(),
             1..=FEW => format!(" (known: {few})"),
             n => format!(" ({n} are known)"),
         };
-        Self::new(Status::UnknownName, format!("no {what} is named `{name}`{closest}{list}"))
+        Self::new(Status::UnknownName, format!("no {what} is named `{name}`{meant}{list}"))
     }
 
     /// The same error with its place.
@@ -157,6 +154,53 @@ impl Error {
         self.place = place;
         self
     }
+}
+
+/// Symbols and words of the field, with the names that they may stand for.
+const SYNONYMS: [(&str, &[&str]); 25] = [
+    ("E", &["youngs_modulus"]),
+    ("young", &["youngs_modulus"]),
+    ("modulus", &["youngs_modulus", "bulk_modulus", "shear_modulus"]),
+    ("nu", &["poissons_ratio"]),
+    ("poisson", &["poissons_ratio"]),
+    ("K", &["bulk_modulus"]),
+    ("G", &["shear_modulus"]),
+    ("phi", &["friction_angle"]),
+    ("friction", &["friction_angle", "static_friction"]),
+    ("psi", &["dilation_angle"]),
+    ("dilatancy_angle", &["dilation_angle"]),
+    ("c", &["cohesion"]),
+    ("mu", &["viscosity", "shear_modulus", "static_friction"]),
+    ("eta", &["viscosity"]),
+    ("gamma", &["heat_capacity_ratio", "exponent"]),
+    ("M", &["critical_stress_ratio"]),
+    ("lambda", &["compression_index", "critical_state_slope"]),
+    ("kappa", &["swelling_index"]),
+    ("OCR", &["overconsolidation_ratio"]),
+    ("rho", &["density", "mass"]),
+    ("density", &["mass"]),
+    ("x", &["position"]),
+    ("displacement", &["position"]),
+    ("sigma", &["stress"]),
+    ("pressure", &["stress"]),
+];
+
+/// The known name that an unknown one stands for, or is spelt like: one letter in three may be
+/// wrong.
+fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    if name.len() > LONGEST_NAME {
+        return None;
+    }
+    let lower = name.to_lowercase();
+    // symbols are what they are, `K` is not `k`; words are words in capitals too
+    let same = |word: &str| word == name || (word.len() > 1 && word.to_lowercase() == lower);
+    let synonyms = SYNONYMS.iter().filter(|(word, _)| same(word)).flat_map(|(_, names)| *names);
+    let known_synonym = synonyms.flat_map(|n| known.clone().find(|k| k == n)).next();
+    known_synonym.or_else(|| {
+        let known = known.clone().filter(|k| k.len() <= LONGEST_NAME);
+        let spelt = known.map(|k| (strsim::damerau_levenshtein(k, &lower), k)).min()?;
+        (spelt.0 <= name.chars().count() / 3).then_some(spelt.1)
+    })
 }
 
 /// Result of everything in lahar that can fail.
@@ -184,18 +228,47 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_closest_of_known_names_is_found_and_few_are_listed() {
-        let text = |name: &str, known: &[&str]| {
-            Error::unknown_name("soil", name, known.iter().copied()).message
-        };
+    fn a_name_is_suggested_only_if_it_is_meant_or_near() {
+        let sand = ["youngs_modulus", "poissons_ratio", "friction_angle", "cohesion", "cone"];
+        let water = ["bulk_modulus", "viscosity"];
+        let fields = ["position", "velocity", "stress", "mass"];
+        for (name, known, expected) in [
+            ("E", &sand[..], Some("youngs_modulus")),
+            ("E", &water, None), // not `cone`, not anything
+            ("nu", &sand, Some("poissons_ratio")),
+            ("NU", &sand, Some("poissons_ratio")),
+            ("phi", &sand, Some("friction_angle")),
+            ("c", &sand, Some("cohesion")),
+            ("C", &sand, None),
+            ("K", &water, Some("bulk_modulus")),
+            ("G", &water, None),
+            ("mu", &water, Some("viscosity")),
+            ("rho", &fields, Some("mass")),
+            ("density", &fields, Some("mass")), // not `velocity`
+            ("density", &sand, None),
+            ("displacement", &fields, Some("position")),
+            ("pressure", &fields, Some("stress")),
+            ("velocty", &fields, Some("velocity")),
+            ("Velocity", &fields, Some("velocity")),
+            ("temperature", &fields, None),
+            ("", &fields, None),
+        ] {
+            assert_eq!(meant(name, known.iter().copied()), expected, "`{name}` among {known:?}");
+        }
+        let text = Error::unknown_name("particle field", "velocty", fields).message;
         assert_eq!(
-            text("slit", &["sand", "silt", "clay"]),
-            "no soil is named `slit`; did you mean `silt`? (known: sand, silt, clay)"
+            text,
+            "no particle field is named `velocty`; did you mean `velocity`? (known: position, velocity, stress, mass)"
         );
-        assert_eq!(text("slit", &[]), "no soil is named `slit` (none is known yet)");
-        let many = text("slit", &["sand", "silt", "clay"].repeat(9));
+        let text = Error::unknown_name("parameter of `newtonian`", "E", water).message;
+        assert_eq!(
+            text,
+            "no parameter of `newtonian` is named `E` (known: bulk_modulus, viscosity)"
+        );
+        let many = Error::unknown_name("soil", "slit", ["sand", "silt", "clay"].repeat(9)).message;
         assert!(many.ends_with("did you mean `silt`? (27 are known)"), "{many}");
-        assert!(!text(&"x".repeat(5000), &["sand"]).contains("did you mean"));
+        let long = Error::unknown_name("soil", &"x".repeat(5000), ["sand"]).message;
+        assert!(!long.contains("did you mean"));
     }
 
     #[test]

@@ -15,6 +15,12 @@ impl BoxRegion {
     /// Whether the corners make sense in `dimension` axes; `what` names the box in errors.
     pub fn check(&self, what: &str, dimension: usize) -> Result<()> {
         for d in 0..dimension {
+            if self.min[d].is_nan() && self.max[d].is_nan() {
+                return Err(Error::invalid(format!(
+                    "the box of {what} was not set along {}: give its corners box_min and box_max [m]",
+                    ["x", "y", "z"][d]
+                )));
+            }
             if !(self.min[d] <= self.max[d]) {
                 return Err(Error::invalid(format!(
                     "the box of {what} needs min <= max, neither being NaN [m]; along {} they are {} and {}",

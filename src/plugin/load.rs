@@ -57,11 +57,12 @@ fn find(name: &str) -> Result<PathBuf> {
         return Err(Error::invalid("the name of the plugin is empty; give a name or a path"));
     }
     let file = format!("{DLL_PREFIX}{name}{DLL_SUFFIX}");
-    let variable = std::env::var_os("LAHAR_PLUGIN_PATH").unwrap_or_default();
+    let variable = std::env::var_os("LAHAR_PLUGIN_PATH");
     // An empty or relative folder would mean the current directory, from which nothing is loaded
     // unasked.
-    let asked: Vec<PathBuf> =
-        std::env::split_paths(&variable).filter(|folder| folder.is_absolute()).collect();
+    let (asked, relative): (Vec<PathBuf>, Vec<PathBuf>) =
+        std::env::split_paths(variable.as_deref().unwrap_or_default())
+            .partition(|folder| folder.is_absolute());
     let installed = installed_folders();
     let folders = asked.iter().chain(&installed);
     if let Some(path) = folders.map(|folder| folder.join(&file)).find(|p| p.exists()) {
@@ -71,16 +72,21 @@ fn find(name: &str) -> Result<PathBuf> {
         let shown: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
         shown.join(", ")
     };
-    let asked = match asked.as_slice() {
-        [] => "LAHAR_PLUGIN_PATH names no absolute folder".to_string(),
-        some => format!("it is not in {} (LAHAR_PLUGIN_PATH)", list(some)),
+    let mut searched = match (&variable, asked.as_slice()) {
+        (None, _) => "LAHAR_PLUGIN_PATH is not set".to_string(),
+        (Some(_), []) => "LAHAR_PLUGIN_PATH has no absolute folder".to_string(),
+        (Some(_), some) => format!("it is not in {} (LAHAR_PLUGIN_PATH)", list(some)),
     };
-    let searched = format!("searched for {file}: {asked}, nor in {}", list(&installed));
+    if !list(&relative).is_empty() {
+        let text = format!(", whose relative folders are not searched: {}", list(&relative));
+        searched.push_str(&text);
+    }
     Err(Error::new(
         Status::PluginNotFound,
         format!(
-            "no plugin `{name}`: {searched}; give a path (for a file of the current directory ./{file}) or add the \
-             plugin's folder to LAHAR_PLUGIN_PATH"
+            "no plugin `{name}`: searched for {file}: {searched}; nor is it in {}; give a path (for a file of the \
+             current directory ./{file}) or add the absolute path of the plugin's folder to LAHAR_PLUGIN_PATH",
+            list(&installed)
         ),
     ))
 }

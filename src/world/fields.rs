@@ -38,7 +38,7 @@ pub struct FieldSliceMut<'a> {
 
 /// The fields of a body with their first columns: those of the engine, then the state variables of
 /// the model.
-fn fields_of(body: &Body, dimension: usize) -> impl Iterator<Item = (FieldInfo, usize)> {
+fn fields_of(body: &Body, dimension: usize) -> impl Iterator<Item = (FieldInfo, usize)> + Clone {
     let layout = &body.particles.layout;
     let mut first = layout.state.first;
     let states = body.material.model().states.iter().map(move |state| {

@@ -46,6 +46,8 @@ static void bad_prescribed_velocities(void) {
   INVALID(lahar_prescribed_velocity_add(world, &c, &id), "along y they are 2 and 1");
   OK(lahar_prescribed_velocity_init(&c, sizeof c));
   c.components = LAHAR_COMPONENT_X;
+  INVALID(lahar_prescribed_velocity_add(world, &c, &id), "the box of a prescribed velocity was not set along x: give its corners");
+  for (int d = 0; d < 3; ++d) c.box_min[d] = 0;
   INVALID(lahar_prescribed_velocity_add(world, &c, &id), "needs min <= max, neither being NaN");
   c = good_velocity();
   c.velocity[0] = NAN;
@@ -94,6 +96,9 @@ static void bad_tractions(void) {
   t = good_traction();
   t.axis = 2;
   INVALID(lahar_traction_add(world, &t, &id), "axis of a traction's normal must be 0 to 1");
+  t = good_traction();
+  for (int d = 0; d < 3; ++d) t.box_min[d] = t.box_max[d] = NAN; /* as lahar_traction_init leaves them */
+  INVALID(lahar_traction_add(world, &t, &id), "the box of a traction was not set along x: give its corners box_min and box_max");
   t.axis = -1;
   INVALID(lahar_traction_add(world, &t, &id), "`axis` is -1");
   t = good_traction();

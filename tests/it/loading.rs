@@ -69,6 +69,36 @@ fn a_bare_name_is_looked_for_in_the_plugin_path_and_nowhere_else() {
 }
 
 #[test]
+fn a_plugin_path_that_is_unset_or_relative_is_called_that() {
+    let name = "loading::a_plugin_path_that_is_unset_or_relative_is_called_that";
+    let both = format!("target/release:{}", std::env::temp_dir().display());
+    let missing = format!("it is not in {} (LAHAR_PLUGIN_PATH)", std::env::temp_dir().display());
+    let none = "LAHAR_PLUGIN_PATH has no absolute folder";
+    let relative = "relative folders are not searched: target/release;";
+    let program = program(&repository("tests/c/installed.c"));
+    let unset = Command::new(&program).env_remove("LAHAR_PLUGIN_PATH").output().expect("it runs");
+    let text = String::from_utf8_lossy(&unset.stdout);
+    assert!(text.contains(".so: LAHAR_PLUGIN_PATH is not set; nor is it in"), "{text}");
+    for (value, texts) in [
+        ("", [none, "folder; nor"]),
+        ("target/release", [none, relative]),
+        (&both, [&missing, relative]),
+    ] {
+        if in_child(name, &[("LAHAR_PLUGIN_PATH", value)]) {
+            if std::env::var("LAHAR_PLUGIN_PATH").as_deref() != Ok(value) {
+                continue; // this child is of another value
+            }
+            let result = context().load_plugin("lahar_linear_elastic");
+            return expect(
+                result,
+                Status::PluginNotFound,
+                &[&texts[..], &["absolute path"]].concat(),
+            );
+        }
+    }
+}
+
+#[test]
 fn a_missing_file_a_folder_and_a_text_have_messages_of_their_own() {
     let missing = refusal("/nowhere/liblahar_x.so");
     assert_eq!(missing.status, Status::PluginNotFound);

@@ -1,7 +1,7 @@
 //! Contexts, materials, batches, threads.
 
 use crate::support::{bad_plugin, in_child, plugin_path, shipped};
-use lahar::context::{Context, LogLevel};
+use lahar::context::{self, Context, LogLevel};
 use lahar::error::{Error, Status};
 use lahar::material::{Input, Kinematics, Material, StressBatch};
 use std::cell::RefCell;
@@ -57,6 +57,22 @@ fn shipped_plugins_load_and_describe_their_models() {
         Status::UnknownName,
         &["did you mean `drucker_prager`?"],
     );
+}
+
+#[test]
+fn a_shipped_model_that_is_not_loaded_is_answered_with_its_plugin() {
+    let names: Vec<String> = context::SHIPPED.iter().map(|(name, _)| name[6..].into()).collect();
+    assert_eq!(names, shipped());
+    for (plugin, models) in context::SHIPPED {
+        let (empty, full) = (context(), context());
+        full.load_plugin(&plugin_path(&plugin["lahar_".len()..])).unwrap();
+        let offered: Vec<&str> = full.models().iter().map(|m| m.name).collect();
+        assert_eq!(offered, models);
+        for model in models {
+            let text = format!("; it comes with the plugin {plugin}: load that first");
+            expect(empty.model(model).map(drop), Status::UnknownName, &[model, &text]);
+        }
+    }
 }
 
 #[test]
