@@ -52,6 +52,9 @@ choices! {
         SmallerStep = 103, "smaller_step", LAHAR_ERROR_SMALLER_STEP;
         /// A material gave no wave speed or no first state; nothing was done.
         MaterialRefused = 104, "material_refused", LAHAR_ERROR_MATERIAL_REFUSED;
+        /// The host's progress callback asked to stop; the steps before are committed, and the world
+        /// can go on.
+        Cancelled = 105, "cancelled", LAHAR_ERROR_CANCELLED;
         /// A file could not be read or written.
         File = 200, "file", LAHAR_ERROR_FILE;
         /// The plugin file is missing.

@@ -42,6 +42,7 @@ module lahar
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_OUTSIDE_GRID = 102_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_SMALLER_STEP = 103_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_MATERIAL_REFUSED = 104_c_int32_t
+  integer(c_int32_t), parameter, public :: LAHAR_ERROR_CANCELLED = 105_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_FILE = 200_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_NOT_FOUND = 201_c_int32_t
   integer(c_int32_t), parameter, public :: LAHAR_ERROR_PLUGIN_INVALID = 202_c_int32_t
@@ -1005,6 +1006,17 @@ module lahar
       integer(c_int32_t) :: answer
     end function lahar_traction_force
 
+    function lahar_world_set_progress(world, callback, user, interval) &
+        bind(c, name="lahar_world_set_progress") result(answer)
+      import :: c_double, c_funptr, c_int32_t, c_ptr
+      implicit none
+      type(c_ptr), value :: world
+      type(c_funptr), value :: callback
+      type(c_ptr), value :: user
+      real(c_double), value :: interval
+      integer(c_int32_t) :: answer
+    end function lahar_world_set_progress
+
     function lahar_world_set_gravity_table(world, count, times, values) &
         bind(c, name="lahar_world_set_gravity_table") result(answer)
       import :: c_double, c_int32_t, c_int64_t, c_ptr
@@ -1239,6 +1251,7 @@ module lahar
   public :: lahar_traction_add
   public :: lahar_traction_remove
   public :: lahar_traction_force
+  public :: lahar_world_set_progress
   public :: lahar_world_set_gravity_table
   public :: lahar_world_equilibrium
   public :: lahar_settle_criteria_init
@@ -1308,6 +1321,7 @@ module lahar
     procedure :: step => world_step
     procedure :: advance => world_advance
     procedure :: settle => world_settle
+    procedure :: set_progress => world_set_progress
     procedure :: equilibrium => world_equilibrium
     procedure :: stable_dt => world_stable_dt
     procedure :: time => world_time
@@ -1357,6 +1371,19 @@ module lahar
     procedure :: free => view_free
   end type lahar_view
 
+  !> Called between steps, see lahar_progress_callback of lahar.h: 0 to go on, anything else cancels. A
+  !> procedure of a module, since an internal one ends with its host.
+  abstract interface
+    function lahar_progress(steps_done, time, user) bind(c) result(answer)
+      import :: c_double, c_int32_t, c_int64_t, c_ptr
+      integer(c_int64_t), value :: steps_done
+      real(c_double), value :: time
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: answer
+    end function lahar_progress
+  end interface
+
+  public :: lahar_progress
   public :: lahar_default_options, lahar_default_fill, lahar_default_wall, lahar_message
   public :: lahar_default_prescribed_velocity, lahar_default_traction, lahar_default_settle_criteria
 
@@ -1587,6 +1614,29 @@ contains
     if (present(steps_done)) steps_done = done(1)
     call finish(status, stat, errmsg)
   end subroutine world_advance
+
+  !> Sets who is called between the steps of advance and settle, at most every `interval` seconds (0.1 if
+  !> it is not given), with the pointer `user`; it may cancel them (LAHAR_ERROR_CANCELLED). Without
+  !> arguments nobody is called any more. Callback and target must live until then, or until the world
+  !> is freed.
+  subroutine world_set_progress(self, callback, user, interval, stat, errmsg)
+    class(lahar_world), intent(inout) :: self
+    procedure(lahar_progress), optional :: callback
+    type(c_ptr), intent(in), optional :: user
+    real(c_double), intent(in), optional :: interval
+    integer, intent(out), optional :: stat
+    character(*), intent(inout), optional :: errmsg
+    type(c_funptr) :: called
+    type(c_ptr) :: passed
+    real(c_double) :: seconds
+    called = c_null_funptr
+    passed = c_null_ptr
+    seconds = 0.1_c_double
+    if (present(callback)) called = c_funloc(callback)
+    if (present(user)) passed = user
+    if (present(interval)) seconds = interval
+    call finish(lahar_world_set_progress(self%handle, called, passed, seconds), stat, errmsg)
+  end subroutine world_set_progress
 
   !> Longest stable step [s]; infinity without particles.
   real(c_double) function world_stable_dt(self, stat, errmsg) result(dt)

@@ -117,6 +117,10 @@ struct lahar_host_api;
 // A material gave no wave speed or no first state; nothing was done.
 #define LAHAR_ERROR_MATERIAL_REFUSED 104
 
+// The host's progress callback asked to stop; the steps before are committed, and the world
+// can go on.
+#define LAHAR_ERROR_CANCELLED 105
+
 // A file could not be read or written.
 #define LAHAR_ERROR_FILE 200
 
@@ -871,11 +875,12 @@ lahar_status lahar_world_step_auto(lahar_world *world, double *dt);
 // other positions or removes the body), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a
 // material failed or asks for a smaller step; its length is in `suggested_dt` of
 // lahar_last_error_info), LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed, or would
-// forget the stress that was given, see lahar_body_write), LAHAR_ERROR_THREADS (the process was
-// forked after the threads of the context had been started), LAHAR_ERROR_OUT_OF_MEMORY,
-// LAHAR_ERROR_MATERIAL_FAILED (the world is poisoned; with `retries` only if a model fails as a
-// whole), LAHAR_ERROR_NON_FINITE (the world is poisoned; not with `retries`), LAHAR_ERROR_POISONED,
-// LAHAR_ERROR_PLUGIN_BROKEN (the world is poisoned if that is found in the middle of a step).
+// forget the stress that was given, see lahar_body_write), LAHAR_ERROR_CANCELLED (see
+// lahar_world_set_progress), LAHAR_ERROR_THREADS (the process was forked after the threads of the
+// context had been started), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world is
+// poisoned; with `retries` only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world is
+// poisoned; not with `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is
+// poisoned if that is found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_advance(lahar_world *world,
                                  double until,
@@ -1539,6 +1544,34 @@ lahar_status lahar_traction_force(const lahar_world *world,
                                   double *area,
                                   double force[3]);
 
+/* ---- progress ----------------------------------------------------------------------------------
+ *
+ * Progress: the host is called between steps, and may cancel what is left of them.
+ */
+
+// Is told how far lahar_world_advance or lahar_world_settle is: the number of steps that the call
+// has committed, the time of the world [s], and the pointer given to lahar_world_set_progress.
+// Returns 0 to go on; anything else cancels the call with LAHAR_ERROR_CANCELLED. Called on the
+// thread that called lahar, in the host's floating-point environment, between two steps. It may call
+// functions tagged `callback-ok` or `any`, on this world too, for instance lahar_world_write_vtp;
+// functions that change the world return LAHAR_ERROR_BUSY. It must not unwind, throw or longjmp.
+typedef int32_t (*lahar_progress_callback)(int64_t steps_done, double time, void *user);
+
+// Sets who is called between the steps of lahar_world_advance and lahar_world_settle, and may cancel
+// them. Results do not depend on it. A host with an interpreter lets it look for signals there.
+//
+// `callback`: see lahar_progress_callback; NULL: nobody is called.
+// `user`: passed to the callback; lahar does not follow it. Both must stay valid until they are
+// replaced by another call or the world is freed, and until calls that run meanwhile have returned.
+// `interval`: shortest time between two calls [s of the clock on the wall], >= 0, finite; 0: after
+// every step. A step is never interrupted, so that the callback comes late by up to a step.
+// Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_INVALID_ARGUMENT (`interval`).
+// Thread: any
+lahar_status lahar_world_set_progress(lahar_world *world,
+                                      lahar_progress_callback callback,
+                                      void *user,
+                                      double interval);
+
 /* ---- statics -----------------------------------------------------------------------------------
  *
  * Statics by dynamics: gravity by a table, the distance of a world from equilibrium, steps until
@@ -1670,11 +1703,12 @@ lahar_status lahar_settle_criteria_init(lahar_settle_criteria *criteria, int64_t
 // body), LAHAR_ERROR_SMALLER_STEP (only with the option `retries`: a material failed or asks for a
 // smaller step; its length is in `suggested_dt` of lahar_last_error_info),
 // LAHAR_ERROR_MATERIAL_REFUSED (a material gives no wave speed, or would forget the stress that was
-// given, see lahar_body_write), LAHAR_ERROR_THREADS (the process was forked after the threads of
-// the context had been started), LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world
-// is poisoned; with `retries` only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world
-// is poisoned; not with `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is
-// poisoned if that is found in the middle of a step).
+// given, see lahar_body_write), LAHAR_ERROR_CANCELLED (see lahar_world_set_progress),
+// LAHAR_ERROR_THREADS (the process was forked after the threads of the context had been started),
+// LAHAR_ERROR_OUT_OF_MEMORY, LAHAR_ERROR_MATERIAL_FAILED (the world is poisoned; with `retries`
+// only if a model fails as a whole), LAHAR_ERROR_NON_FINITE (the world is poisoned; not with
+// `retries`), LAHAR_ERROR_POISONED, LAHAR_ERROR_PLUGIN_BROKEN (the world is poisoned if that is
+// found in the middle of a step).
 // Thread: owner
 lahar_status lahar_world_settle(lahar_world *world,
                                 const lahar_settle_criteria *criteria,

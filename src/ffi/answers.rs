@@ -51,6 +51,8 @@ const MAPPED: Set = &[
     (Threads, "as in lahar_world_step, if particles have to be mapped"),
     (OutOfMemory, ""),
 ];
+/// The host is called between steps.
+const CANCELLED: Set = &[(Cancelled, "see lahar_world_set_progress")];
 /// A model is asked for the first state of particles.
 const FIRST_STATE: Set = &[(PluginBroken, "nothing has changed")];
 /// The function adds a body.
@@ -190,6 +192,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
         &[
             CHANGE,
             ADVANCE,
+            CANCELLED,
             &[(
                 InvalidArgument,
                 "`until` is not finite or in the past; `max_steps` is negative; the stable step becomes so \
@@ -197,6 +200,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             )],
         ],
     ),
+    ("lahar_world_set_progress", &[POINTERS, &[(InvalidArgument, "`interval`")]]),
     (
         "lahar_world_stable_dt",
         &[
@@ -361,6 +365,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             CHANGE,
             STRUCT,
             ADVANCE,
+            CANCELLED,
             &[(
                 InvalidArgument,
                 "criteria that are not positive; both the stable step and `until` are infinite; the stable \

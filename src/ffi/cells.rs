@@ -4,12 +4,14 @@
 use super::arguments::reference;
 use super::context::lahar_context;
 use super::entry::Scope;
+use super::progress::Progress;
 use super::world::lahar_world;
 use crate::context::Context;
 use crate::error::{Error, Result, Status};
-use crate::world::World;
+use crate::world::{Pause, World};
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
+use std::time::Instant;
 
 /// A context and the last error of any call on it or on its children.
 pub(super) struct ContextCell {
@@ -48,9 +50,12 @@ pub(super) enum Change {
     Bodies,
 }
 
-/// What `World::advance` did: number of committed steps, time that was reached [s], and the error
-/// that ended it.
+/// What many steps did: number of committed ones, time that was reached [s], and the error that
+/// ended them.
 pub(super) type Steps = (i64, f64, Result<()>);
+
+/// What many steps did so far: number of committed ones, and whether they are over, not paused.
+pub(super) type Slice = (i64, Result<bool>);
 
 /// A world with its lock, and what views need to know.
 pub(super) struct WorldCell {
@@ -64,6 +69,8 @@ pub(super) struct WorldCell {
     write_views: AtomicI64,
     written_through_views: AtomicBool,
     generation: AtomicI64,
+    progress: Mutex<Option<Progress>>,
+    is_paused: AtomicBool,
 }
 
 impl WorldCell {
@@ -78,7 +85,14 @@ impl WorldCell {
             write_views: AtomicI64::new(0),
             written_through_views: AtomicBool::new(false),
             generation: AtomicI64::new(0),
+            progress: Mutex::new(None),
+            is_paused: AtomicBool::new(false),
         })
+    }
+
+    /// Sets who is called between steps.
+    pub(super) fn set_progress(&self, progress: Option<Progress>) {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
     }
 
     /// After a panic: mutating calls are refused from now on.
@@ -149,22 +163,58 @@ impl WorldCell {
     ) -> Result<R> {
         let is_refused =
             |result: &Result<R>| matches!(result, Err(error) if error.status as i32 > 0);
-        self.run(change, f, is_refused)?
+        let mut world = self.write(change)?;
+        self.run(&mut world, change, f, is_refused)?
     }
 
-    /// Runs many steps: (number of committed steps, time, error).
-    pub(super) fn advance(&self, f: impl FnOnce(&mut World) -> Steps) -> Result<Steps> {
-        self.run(Change::Step, f, |(done, _, _)| *done == 0)
+    /// Runs many steps. `steps` makes them until it is over, or until its argument says to pause;
+    /// then the host is called, and it is called again.
+    pub(super) fn advance(
+        &self,
+        mut steps: impl FnMut(&mut World, Pause<'_>) -> Slice,
+    ) -> Result<Steps> {
+        let mut world = self.write(Change::Step)?;
+        loop {
+            let progress = *self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+            let start = Instant::now();
+            let mut is_due = || progress.is_some_and(|p| start.elapsed() >= p.interval);
+            let slice = |w: &mut World| steps(w, &mut is_due);
+            let (done, result) = self.run(&mut world, Change::Step, slice, |(n, _)| *n == 0)?;
+            let time = world.time();
+            let (Ok(false), Some(progress)) = (&result, progress) else {
+                return Ok((done, time, result.map(drop)));
+            };
+            let answer;
+            (world, answer) = self.pause(world, || progress.call(done, time));
+            if answer.is_err() || self.is_poisoned(&world) {
+                return Ok((done, time, answer.and(Err(poisoned()))));
+            }
+        }
+    }
+
+    /// Runs `f` between two steps: the world answers queries and cannot be changed.
+    fn pause<'a, R>(
+        &'a self,
+        world: RwLockWriteGuard<'a, World>,
+        f: impl FnOnce() -> R,
+    ) -> (RwLockWriteGuard<'a, World>, R) {
+        self.is_paused.store(true, Ordering::Release);
+        drop(world);
+        let result = f();
+        // waits for queries of other threads
+        let world = self.world.write().unwrap_or_else(PoisonError::into_inner);
+        self.is_paused.store(false, Ordering::Release);
+        (world, result)
     }
 
     /// `is_unchanged`: whether nothing was done, by the result.
     fn run<R>(
         &self,
+        world: &mut World,
         change: Change,
         f: impl FnOnce(&mut World) -> R,
         is_unchanged: impl FnOnce(&R) -> bool,
     ) -> Result<R> {
-        let mut world = self.write(change)?;
         let sorts = world.sorts();
         if change == Change::Step {
             if self.written_through_views.swap(false, Ordering::AcqRel) {
@@ -175,7 +225,7 @@ impl WorldCell {
             // write lock.
             self.generation.fetch_add(1, Ordering::AcqRel);
         }
-        let result = f(&mut world);
+        let result = f(world);
         let same_order = world.sorts() == sorts && is_unchanged(&result) && !world.is_poisoned();
         if change == Change::Step && same_order {
             self.generation.fetch_sub(1, Ordering::AcqRel);
@@ -201,6 +251,9 @@ impl WorldCell {
             Err(TryLockError::Poisoned(_)) => return Err(poisoned()),
             Err(TryLockError::WouldBlock) => return Err(busy()),
         };
+        if self.is_paused.load(Ordering::Acquire) {
+            return Err(busy());
+        }
         if self.is_poisoned(&world) {
             return Err(poisoned());
         }
@@ -277,7 +330,8 @@ impl Scope {
 fn busy() -> Error {
     Error::new(
         Status::Busy,
-        "another thread is using the world; expected one mutating call at a time: try again",
+        "the world is in use, by another thread or by the call that this callback belongs to; expected one mutating call \
+         at a time: try again",
     )
 }
 

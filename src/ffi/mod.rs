@@ -22,6 +22,7 @@ pub mod material;
 pub mod model;
 pub mod output;
 pub mod prescribed_velocity;
+pub mod progress;
 pub mod statics;
 pub mod status;
 pub mod table;

@@ -221,10 +221,9 @@ pub unsafe extern "C" fn lahar_world_settle(
             Some(unsafe { struct_out(result, "result") }?)
         };
         let mut settled = Settled::default();
-        let (steps, time, answer) = cell.advance(|w| {
-            let answer;
-            (settled, answer) = w.settle(&criteria);
-            (settled.steps, w.time(), answer)
+        let (steps, time, answer) = cell.advance(|w, pause| {
+            let is_over = w.settle_or_pause(&criteria, &mut settled, pause);
+            (settled.steps, is_over)
         })?;
         target.inspect(|target| {
             target.set(lahar_settle_result {

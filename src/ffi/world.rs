@@ -311,9 +311,11 @@ pub unsafe extern "C" fn lahar_world_advance(
 }
 
 fn advance(cell: &WorldCell, until: f64, max_steps: i64) -> Result<Steps> {
-    cell.advance(|w| {
-        let (done, result) = w.advance(until, max_steps);
-        (done, w.time(), result)
+    let mut done = 0;
+    cell.advance(|w, pause| {
+        let (steps, result) = w.advance_or_pause(until, max_steps - done, pause);
+        done += steps;
+        (done, result.map(|()| done >= max_steps || w.time() >= until))
     })
 }
 

@@ -38,6 +38,9 @@ use queries::Totals;
 /// Factor by which a host's step may exceed the stable one: round-off of the host's arithmetic.
 const STEP_TOLERANCE: f64 = 1.0 + 1e-9;
 
+/// Asked after each of many steps whether to pause.
+pub type Pause<'a> = &'a mut dyn FnMut() -> bool;
+
 /// Bodies, grid, walls and time.
 pub struct World {
     pub(crate) inner: Inner,
@@ -204,6 +207,17 @@ impl World {
     ///
     /// The last two steps are shortened so that `until` is met exactly.
     pub fn advance(&mut self, until: f64, max_steps: i64) -> (i64, Result<()>) {
+        self.advance_or_pause(until, max_steps, &mut || false)
+    }
+
+    /// The same, but returns early if `pause` says so. To call it again with what is left of
+    /// `max_steps` goes on as if there had been no pause.
+    pub fn advance_or_pause(
+        &mut self,
+        until: f64,
+        max_steps: i64,
+        pause: Pause<'_>,
+    ) -> (i64, Result<()>) {
         if !until.is_finite() || until < self.time() || max_steps < 0 {
             let text = format!(
                 "advance needs a finite time not before now ({} s) and max_steps >= 0, got {until} and {max_steps}",
@@ -231,6 +245,9 @@ impl World {
                 Err(error) => return (steps, Err(error)),
             }
             steps += 1;
+            if pause() {
+                break;
+            }
         }
         (steps, Ok(()))
     }

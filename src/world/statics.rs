@@ -10,7 +10,7 @@ use crate::step::parts::Parts;
 
 use super::bodies::init_state;
 use super::given_stress;
-use super::{World, on};
+use super::{Pause, World, on};
 
 /// Steps between two checks of the equilibrium in [`World::settle`].
 pub const STEPS_BETWEEN_CHECKS: i64 = 50;
@@ -96,27 +96,40 @@ impl World {
     /// time of the last row of every table in use.
     pub fn settle(&mut self, criteria: &Criteria) -> (Settled, Result<()>) {
         let mut settled = Settled::default();
-        if let Err(error) = self.check_alive().and_then(|()| self.check_criteria(criteria)) {
-            return (settled, Err(error));
+        let result = self.settle_or_pause(criteria, &mut settled, &mut || false);
+        (settled, result.map(drop))
+    }
+
+    /// The same, but returns early if `pause` says so: whether it is over. To call it again with
+    /// what it has left in `settled` goes on as if there had been no pause.
+    pub fn settle_or_pause(
+        &mut self,
+        criteria: &Criteria,
+        settled: &mut Settled,
+        pause: Pause<'_>,
+    ) -> Result<bool> {
+        if settled.steps == 0 {
+            self.check_alive().and_then(|()| self.check_criteria(criteria))?;
         }
         loop {
-            let steps = STEPS_BETWEEN_CHECKS.min(criteria.max_steps - settled.steps);
-            let (done, result) = self.advance(criteria.until.min(f64::MAX), steps);
+            let unchecked = STEPS_BETWEEN_CHECKS - settled.steps % STEPS_BETWEEN_CHECKS;
+            let steps = unchecked.min(criteria.max_steps - settled.steps);
+            let (done, result) = self.advance_or_pause(criteria.until.min(f64::MAX), steps, pause);
             settled.steps += done;
-            let checked = result.and_then(|()| self.equilibrium());
-            settled.equilibrium = match checked {
-                Ok(equilibrium) => equilibrium,
-                Err(error) => return (settled, Err(error)),
-            };
+            result?;
+            let over = settled.steps >= criteria.max_steps || self.time() >= criteria.until;
+            if done < steps && !over {
+                return Ok(false);
+            }
+            settled.equilibrium = self.equilibrium()?;
             let now = settled.equilibrium;
             let constant = on!(&self, s => s.conditions.end() <= s.clock.time);
             settled.converged = constant
                 && settled.steps > 0
                 && now.kinetic_ratio <= criteria.kinetic_ratio
                 && now.unbalanced_ratio <= criteria.unbalanced_ratio;
-            let over = settled.steps >= criteria.max_steps || self.time() >= criteria.until;
             if settled.converged || over {
-                return (settled, Ok(()));
+                return Ok(true);
             }
         }
     }

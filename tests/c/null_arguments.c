@@ -6,6 +6,8 @@
 
 static void spoil(void) {}
 
+static int32_t go_on(int64_t steps, double time, void *user) { return (void)steps, (void)time, user != NULL; }
+
 static lahar_world *world;
 
 /* Function, argument, arguments of the call. */
@@ -311,6 +313,9 @@ static void condition_functions(void) {
   OK(lahar_settle_criteria_init(&criteria, sizeof criteria));
   NULL_REFUSED(lahar_settle_criteria_init, criteria, (NULL, sizeof criteria));
   criteria.max_steps = 1;
+  NULL_REFUSED(lahar_world_set_progress, world, (NULL, go_on, NULL, 0.1));
+  NULL_ALLOWED(lahar_world_set_progress, user, (world, go_on, NULL, 0.1));
+  OK(lahar_world_set_progress(world, NULL, NULL, 0.1));
   NULL_REFUSED(lahar_world_settle, world, (NULL, &criteria, &result));
   NULL_ALLOWED(lahar_world_settle, result, (world, &criteria, NULL));
   NULL_REFUSED(lahar_body_set_k0_stress, world, (NULL, 0, 1, 0, 0.5));

@@ -126,7 +126,7 @@ fn the_readable_layer_has_every_condition_and_gives_the_numbers_of_c() {
 
 /// Compiles a Fortran program with the module, by the documented line and stricter; the path of the
 /// program.
-fn program(source: &Path, more: &[&str]) -> PathBuf {
+pub fn program(source: &Path, more: &[&str]) -> PathBuf {
     let library = library_folder();
     let folder = scratch_folder();
     let target = folder.join(source.file_stem().expect("a file name"));

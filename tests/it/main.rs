@@ -28,6 +28,7 @@ mod order;
 mod own_material;
 mod plugin_tool;
 mod plugins;
+mod progress;
 mod readme;
 mod register;
 mod retry;

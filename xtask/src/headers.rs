@@ -36,6 +36,7 @@ const SECTIONS: &[(&str, &[List])] = &[
     ("table", &[]),
     ("prescribed_velocity", &[]),
     ("traction", &[]),
+    ("progress", &[]),
     ("statics", &[]),
     ("grid", &[]),
     ("output", &[]),
