@@ -25,6 +25,7 @@ use lahar::ffi::material::*;
 use lahar::ffi::model::*;
 use lahar::ffi::output::*;
 use lahar::ffi::prescribed_velocity::*;
+use lahar::ffi::progress::*;
 use lahar::ffi::statics::*;
 use lahar::ffi::table::lahar_table;
 use lahar::ffi::traction::*;
@@ -213,14 +214,14 @@ fn all_functions(run: Run, walked: &mut Walked) {
     context_functions(context, walked);
     walk!(walked, (), lahar_version(&mut small, &mut small, &mut small));
     let mut material: *mut lahar_material = null_mut();
-    let keys = [c"youngs_modulus", c"poissons_ratio", c"friction_angle", c"cohesion"];
+    let keys = [c"youngs_modulus", c"poissons_ratio", c"friction_angle", c"cohesion", c"cone"];
     let keys = keys.map(|key| key.as_ptr());
-    let (values, model) = ([1e6, 0.3, 30.0, 1e3], c"drucker_prager".as_ptr());
+    let (values, model) = ([1e6, 0.3, 30.0, 1e3, 0.0], c"drucker_prager".as_ptr());
     let given = (keys.as_ptr(), values.as_ptr());
     walk!(
         walked,
         material.is_null(),
-        lahar_material_create(context, model, 4, given.0, given.1, &mut material)
+        lahar_material_create(context, model, 5, given.0, given.1, &mut material)
     );
     let mut value = 0.0;
     walk!(walked, (), lahar_material_value(material, keys[0], &mut value));
@@ -446,6 +447,7 @@ fn steps(world: *mut lahar_world, body: i64, walked: &mut Walked) {
         }
     }
     walk!(walked, (), lahar_world_set_damping(world, 0.5));
+    walk!(walked, (), lahar_world_set_progress(world, None, null_mut(), 0.0));
     let criteria = filled!(
         walked, lahar_settle_criteria, lahar_settle_criteria_init, max_steps: 3,
     );

@@ -200,7 +200,6 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             )],
         ],
     ),
-    ("lahar_world_set_progress", &[POINTERS, &[(InvalidArgument, "`interval`")]]),
     (
         "lahar_world_stable_dt",
         &[
@@ -329,6 +328,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
     ),
     ("lahar_traction_remove", &[CHANGE, CONDITION]),
     ("lahar_traction_force", &[QUERY, CONDITION]),
+    ("lahar_world_set_progress", &[POINTERS, &[(InvalidArgument, "`interval`")]]),
     (
         "lahar_world_set_gravity_table",
         &[
