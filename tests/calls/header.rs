@@ -1,6 +1,10 @@
-//! What `lahar.h` says: its functions with their arguments and statuses, and its structs.
+//! What `lahar.h` says: its functions with their arguments, and its structs. The statuses that the
+//! header lists for a function come from the list that the header is generated from.
 
 use std::collections::{BTreeMap, BTreeSet};
+
+use lahar::error::Status;
+use lahar::ffi::answers::documented;
 
 /// A field or an argument.
 #[derive(Clone, Debug)]
@@ -22,8 +26,8 @@ pub struct Function {
     pub arguments: Vec<Declaration>,
     /// Whether it returns a status.
     pub has_status: bool,
-    /// Names of the statuses that its text lists, those of functions that it refers to included.
-    pub statuses: BTreeSet<String>,
+    /// The statuses that its text lists.
+    pub statuses: Vec<Status>,
 }
 
 /// All of the header.
@@ -38,47 +42,25 @@ impl Header {
     /// Reads the text of a header.
     pub fn read(text: &str) -> Self {
         let mut header = Self::default();
-        let (mut comment, mut code) = (String::new(), String::new());
-        let (mut texts, mut sections) = (BTreeMap::new(), BTreeMap::new());
-        let mut section = BTreeSet::new();
+        let mut code = String::new();
         let (_, text) = text.split_once("extern \"C\" {").expect("declarations for C++ too");
         for line in text.lines().map(str::trim) {
-            if let Some(text) = line.strip_prefix("//") {
-                // a field's comment is none of its struct
-                if code.is_empty() {
-                    comment.push_str(text);
-                }
-            } else if line.is_empty() || line.starts_with(['#', '/', '*']) {
-                comment.clear();
-                // what any function of a section may return
-                if line.starts_with("/* ---- ") {
-                    section.clear();
-                }
-                section.extend(words(line).filter(|word| is_status(word)).map(String::from));
-            } else {
-                code.push_str(line.split("//").next().unwrap_or_default());
-                code.push(' ');
-                let is_open = code.matches('{').count() > code.matches('}').count();
-                if line.ends_with(';') && !is_open {
-                    let name = header.declaration(&code);
-                    if let Some(name) = name {
-                        sections.insert(name.clone(), section.clone());
-                        texts.insert(name, comment.clone());
-                    }
-                    code.clear();
-                    comment.clear();
-                }
+            if line.is_empty() || line.starts_with(['#', '/', '*']) {
+                continue;
             }
-        }
-        for function in &mut header.functions {
-            function.statuses = statuses(&function.name, &texts, 3);
-            function.statuses.extend(sections[&function.name].iter().cloned());
+            code.push_str(line.split("//").next().unwrap_or_default());
+            code.push(' ');
+            let is_open = code.matches('{').count() > code.matches('}').count();
+            if line.ends_with(';') && !is_open {
+                header.declaration(&code);
+                code.clear();
+            }
         }
         header
     }
 
-    /// Takes a whole declaration; the name of a function.
-    fn declaration(&mut self, code: &str) -> Option<String> {
+    /// Takes a whole declaration.
+    fn declaration(&mut self, code: &str) -> Option<()> {
         if let Some(rest) = code.strip_prefix("typedef struct ") {
             let (name, rest) = rest.split_once('{')?;
             let fields = rest.split('}').next()?.split(';').map(str::trim);
@@ -102,9 +84,9 @@ impl Header {
             list => list.split(',').map(|a| declared(a.trim(), true)).collect(),
         };
         let has_status = head.starts_with("lahar_status");
-        let statuses = BTreeSet::new();
-        self.functions.push(Function { name: name.clone(), arguments, has_status, statuses });
-        Some(name)
+        let statuses = documented(&name).unwrap_or_default();
+        self.functions.push(Function { name, arguments, has_status, statuses });
+        Some(())
     }
 }
 
@@ -123,29 +105,4 @@ fn declared(text: &str, is_argument: bool) -> Declaration {
         name: name.into(),
         is_const: kind.contains("const"),
     }
-}
-
-/// The statuses that a function's text lists after "Errors", and those of the functions that it
-/// names there.
-fn statuses(function: &str, texts: &BTreeMap<String, String>, depth: usize) -> BTreeSet<String> {
-    let text = texts.get(function).map_or("", String::as_str);
-    let Some((_, errors)) = text.split_once("Errors") else { return BTreeSet::new() };
-    let errors = errors.split(" Thread:").next().unwrap_or_default();
-    let mut found = BTreeSet::new();
-    for word in words(errors) {
-        if is_status(word) {
-            found.insert(word.to_string());
-        } else if depth > 0 && word != function && texts.contains_key(word) {
-            found.extend(statuses(word, texts, depth - 1));
-        }
-    }
-    found
-}
-
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !c.is_alphanumeric() && c != '_')
-}
-
-fn is_status(word: &str) -> bool {
-    word.starts_with("LAHAR_ERROR_")
 }

@@ -75,8 +75,7 @@ fn the_header_is_read_whole() {
     assert_eq!(names, symbols.lines().filter(|l| !l.starts_with('#')).collect::<Vec<_>>());
     let of = |name: &str| header.functions.iter().find(|f| f.name == name).expect("a function");
     assert_eq!(of("lahar_body_read").arguments.len(), 7);
-    assert!(of("lahar_world_step_auto").statuses.contains("LAHAR_ERROR_STEP_TOO_LARGE"));
-    assert!(!of("lahar_world_time").statuses.contains("LAHAR_ERROR_NOT_FOUND"));
+    assert!(header.functions.iter().all(|f| f.has_status != f.statuses.is_empty()));
     assert_eq!(header.structs["lahar_particles"].len(), 10);
 }
 

@@ -5,6 +5,8 @@ use std::ffi::CString;
 use std::ops::Range;
 use std::path::Path;
 
+use lahar::error::Status;
+
 use super::caller::{Arguments, Caller, on_log, on_progress};
 use super::header::{Declaration, Function, Header};
 use super::setup::Random;
@@ -64,7 +66,7 @@ impl<'a> Host<'a> {
             plugins: words.len() - 3..words.len(),
             numbers,
             rising: (0..ARRAY).map(|k| 0.1 * k as f64).collect(),
-            constants: [1e5, 0.3, 30.0, 10.0].into_iter().cycle().take(ARRAY).collect(),
+            constants: [1e5, 0.3, 30.0, 10.0, 0.0].into_iter().cycle().take(ARRAY).collect(),
             integers: (0..ARRAY as i64).map(|k| k % 64).collect(),
             output: vec![0; ARRAY],
             structs: vec![[0; STRUCT / 8]; 16],
@@ -100,7 +102,7 @@ impl<'a> Host<'a> {
         self.good("lahar_context_load_plugin", &[context, plugin, 0]);
         let names: Vec<i64> = self.texts[..2].iter().map(|text| text.as_ptr() as i64).collect();
         let values = [1e5, 0.3];
-        let model = self.texts[4].as_ptr() as i64;
+        let model = self.texts[MODELS.start].as_ptr() as i64;
         let (names, values) = (names.as_ptr() as i64, values.as_ptr() as i64);
         let inputs = [context, model, 2, names, values];
         let material = self.made("lahar_material", "lahar_material_create", &inputs);
@@ -218,7 +220,8 @@ impl<'a> Host<'a> {
         }
         let status = self.caller.status_name(answer);
         *self.seen.entry((&function.name, status.clone())).or_default() += 1;
-        if answer != 0 && (status.ends_with("_PANIC") || !function.statuses.contains(&status)) {
+        let is_listed = Status::from_i32(answer).is_ok_and(|s| function.statuses.contains(&s));
+        if answer != 0 && !is_listed {
             let message = self.caller.message();
             self.breaks.entry((&function.name, status.clone())).or_insert(message);
         }
@@ -327,7 +330,7 @@ impl<'a> Host<'a> {
     /// An array of texts, with what a model needs in front.
     fn texts_of(&mut self, n: usize, name: &str) -> i64 {
         assert_eq!(name, "names", "another array of texts: say what is in it");
-        let mut list: Vec<i64> = (0..4).map(|k| self.texts[k].as_ptr() as i64).collect();
+        let mut list: Vec<i64> = PARAMETERS.map(|k| self.texts[k].as_ptr() as i64).collect();
         list.extend((0..MOST_POINTS).map(|_| if self.chance(0.1) { 0 } else { self.text() }));
         self.lists[n % 4] = list;
         self.lists[n % 4].as_ptr() as i64
@@ -437,7 +440,7 @@ impl<'a> Host<'a> {
         match name {
             "size" => self.below(STRUCT) as i64,
             "max_steps" => self.one_of(&[0, 1, 2, 3]),
-            "count" => self.one_of(&[0, 1, 2, 4, 16, 25, 100, MOST_POINTS]),
+            "count" => self.one_of(&[0, 1, 2, 4, 5, 16, 25, 100, MOST_POINTS]),
             "capacity" => self.one_of(&[0, 1, 10, 500]),
             "component_stride" => self.one_of(&[0, 0, 0, 1, 2, MOST_POINTS]),
             "point_stride" => self.one_of(&[0, 0, 0, 1, 2, 9]),
@@ -487,9 +490,9 @@ impl<'a> Host<'a> {
     }
 }
 
-const PARAMETERS: Range<usize> = 0..4;
-const MODELS: Range<usize> = 4..7;
-const FIELDS: Range<usize> = 7..14;
+const PARAMETERS: Range<usize> = 0..5;
+const MODELS: Range<usize> = 5..8;
+const FIELDS: Range<usize> = 8..15;
 
 /// Texts that mean something to the library; plugins are the last.
 pub fn words(plugins: &[String], folder: &Path) -> Vec<String> {
@@ -498,6 +501,7 @@ pub fn words(plugins: &[String], folder: &Path) -> Vec<String> {
         "poissons_ratio",
         "friction_angle",
         "cohesion",
+        "cone",
         "linear_elastic",
         "drucker_prager",
         "newtonian",
