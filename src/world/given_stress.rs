@@ -12,9 +12,12 @@ use lahar_plugin_abi::{LAHAR_OUTPUT_DIFFUSIVITY, LAHAR_POINT_FAILED};
 use crate::error::{Error, Place, Result, Status};
 use crate::material::scratch::{Scratch, with_scratch};
 use crate::material::{Input, Kinematics, StressBatch};
+use crate::memory::collect;
 use crate::particles::inputs::fill_start;
 use crate::particles::{Body, CHUNK};
 
+/// What memory is for, if there is none.
+const WHAT: &str = "the stresses after an instant";
 /// Length of the instant [s], in which nothing flows; its square is still a number.
 const INSTANT: f64 = 1e-150;
 /// What counts as the same stress: this part of the largest in the body, and the stress of this
@@ -85,7 +88,7 @@ fn changes_of_chunk(
     (start, same): (usize, f64),
     all: &mut Changes,
 ) -> Result<()> {
-    let given: Vec<[f64; 6]> = (0..s.n).map(|k| s.stress0_of(k)).collect();
+    let given = collect((0..s.n).map(|k| s.stress0_of(k)), WHAT)?;
     let kept = after_an_instant(body, s)?;
     let particles = &body.particles;
     let modulus = |s: &Scratch<'_>, k: usize| {
@@ -93,7 +96,7 @@ fn changes_of_chunk(
         let layout = particles.layout;
         at(layout.mass) / at(layout.volume) * s.wave_speed[k] * s.wave_speed[k]
     };
-    let moduli: Vec<f64> = (0..s.n).map(|k| modulus(s, k)).collect();
+    let moduli = collect((0..s.n).map(|k| modulus(s, k)), WHAT)?;
     let changed = |k: usize| {
         let same = same + SAME_STRAIN * moduli[k];
         kept[k].is_some_and(|kept| parts(given[k], kept).into_iter().any(|part| part > same))
@@ -101,13 +104,12 @@ fn changes_of_chunk(
     if !(0..s.n).any(changed) {
         return Ok(());
     }
-    let probes: Vec<[f64; 6]> = (0..s.n)
-        .map(|k| {
-            let change = PROBE_STRAIN * moduli[k] + same; // cold gas has no modulus
-            let [xx, yy, zz, xy, yz, zx] = kept[k].unwrap_or(given[k]).map(|v| 0.9 * v);
-            [xx - change, yy - change, zz - change, xy + 0.01 * change, yz, zx]
-        })
-        .collect();
+    let probe = |k: usize| {
+        let change = PROBE_STRAIN * moduli[k] + same; // cold gas has no modulus
+        let [xx, yy, zz, xy, yz, zx] = kept[k].unwrap_or(given[k]).map(|v| 0.9 * v);
+        [xx - change, yy - change, zz - change, xy + 0.01 * change, yz, zx]
+    };
+    let probes = collect((0..s.n).map(probe), WHAT)?;
     for (k, probe) in probes.iter().enumerate() {
         (0..6).for_each(|c| s.stress0[c * s.stride + k] = probe[c]);
     }
@@ -134,14 +136,18 @@ fn after_an_instant(body: &Body, s: &mut Scratch<'_>) -> Result<Vec<Option<[f64;
     s.status.fill(0);
     body.material.update(&mut StressBatch { dt: INSTANT, ..s.batch() }).map_err(|error| {
         let place = Place { body: Some(body.id), ..Place::default() };
-        Error { status: Status::MaterialRefused, ..error }.at(place)
+        let status = match error.status {
+            Status::MaterialFailed => Status::MaterialRefused,
+            other => other,
+        };
+        Error { status, ..error }.at(place)
     })?;
     let stress = |k: usize| {
         let stress: [f64; 6] = std::array::from_fn(|c| s.stress1[c * s.stride + k]);
         let good = s.status[k] < LAHAR_POINT_FAILED && stress.iter().all(|v| v.is_finite());
         (good && s.wave_speed[k].is_finite()).then_some(stress)
     };
-    Ok((0..s.n).map(stress).collect())
+    collect((0..s.n).map(stress), WHAT)
 }
 
 /// By how much two stresses differ: in the mean, and in the deviator.
