@@ -896,8 +896,7 @@ lahar_status lahar_world_advance(lahar_world *world,
 // the spacing, D the dimension, nu the kinematic viscosity. Of gravity by a table the largest
 // value in the step is used. A prescribed velocity V adds the condition |V| dt <= cfl h.
 // Errors: LAHAR_ERROR_NULL_ARGUMENT, LAHAR_ERROR_BUSY, LAHAR_ERROR_MATERIAL_REFUSED (a material
-// gives no wave speed, or would forget the stress that was given, see lahar_body_write),
-// LAHAR_ERROR_OUT_OF_MEMORY.
+// gives no wave speed), LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_stable_dt(const lahar_world *world, double *dt);
 
@@ -1670,8 +1669,7 @@ lahar_status lahar_world_set_gravity_table(lahar_world *world,
 // is open, and particles have to be mapped to the grid), LAHAR_ERROR_BUSY (also while another
 // thread runs a query, if particles have to be mapped), LAHAR_ERROR_OUTSIDE_GRID (as in
 // lahar_world_step, if particles have to be mapped), LAHAR_ERROR_MATERIAL_REFUSED (a material gives
-// no wave speed, or would forget the stress that was given, see lahar_body_write),
-// LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
+// no wave speed), LAHAR_ERROR_THREADS (as in lahar_world_step, if particles have to be mapped),
 // LAHAR_ERROR_OUT_OF_MEMORY.
 // Thread: callback-ok
 lahar_status lahar_world_equilibrium(const lahar_world *world, lahar_equilibrium *equilibrium);

@@ -202,14 +202,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
     ),
     (
         "lahar_world_stable_dt",
-        &[
-            QUERY,
-            MEMORY,
-            &[(
-                MaterialRefused,
-                "a material gives no wave speed, or would forget the stress that was given, see lahar_body_write",
-            )],
-        ],
+        &[QUERY, MEMORY, &[(MaterialRefused, "a material gives no wave speed")]],
     ),
     ("lahar_world_time", &[QUERY]),
     ("lahar_world_step_count", &[QUERY]),
@@ -351,10 +344,7 @@ pub const ANSWERS: &[(&str, &[Set])] = &[
             MAPPED,
             &[
                 (Busy, "also while another thread runs a query, if particles have to be mapped"),
-                (
-                    MaterialRefused,
-                    "a material gives no wave speed, or would forget the stress that was given, see lahar_body_write",
-                ),
+                (MaterialRefused, "a material gives no wave speed"),
             ],
         ],
     ),
