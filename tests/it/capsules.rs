@@ -224,7 +224,7 @@ const SPOILED: [(&str, &str, Status, &[&str]); 13] = [
         "\"strain_increment\":",
         "\"velocity_gradient\":",
         Status::UnknownName,
-        &["`strain_increment`"],
+        &["known: strain_increment"],
     ),
     (
         "\"memory\": [\n      1.0",
