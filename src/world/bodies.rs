@@ -213,18 +213,6 @@ impl<const D: usize> Parts<D> {
                 let in_cells = (x[d] / space.spacing).abs().max(space.to_units(x)[d].abs());
                 in_cells < FARTHEST
             };
-            let behind = |d: usize| {
-                let xi = (x[d] - space.origin[d]) * space.inverse;
-                !(space.fits[d].walls[0] - 1e-6 <= xi && xi <= space.fits[d].walls[1] + 1e-6)
-            };
-            if (0..D).any(behind) {
-                let text = format!(
-                    "particle {} at {x:?} is behind a wall, where modified shape functions have no nodes: \
-                     move it in front, or use wall_treatment plain",
-                    particles.id[k]
-                );
-                return Err(Error::invalid(text).at(place(k)));
-            }
             let far = !(0..D).all(near);
             if let Some(gradient) = layout.deformation_gradient {
                 let f = particles.get::<9>(gradient.first, k);
@@ -247,6 +235,18 @@ impl<const D: usize> Parts<D> {
             if far || !self.method.options.holds(&x) {
                 let text = format!(
                     "particle {} at {x:?} is outside the grid (1e8 cells around its origin and that of space, or the box of a static grid)",
+                    particles.id[k]
+                );
+                return Err(Error::invalid(text).at(place(k)));
+            }
+            let behind = |d: usize| {
+                let xi = (x[d] - space.origin[d]) * space.inverse;
+                !(space.fits[d].walls[0] - 1e-6 <= xi && xi <= space.fits[d].walls[1] + 1e-6)
+            };
+            if (0..D).any(behind) {
+                let text = format!(
+                    "particle {} at {x:?} is behind a wall, where modified shape functions have no nodes: \
+                     move it in front, or use wall_treatment plain",
                     particles.id[k]
                 );
                 return Err(Error::invalid(text).at(place(k)));
