@@ -109,6 +109,12 @@ impl Condition for Wall {
     const WHAT: &'static str = "wall";
 }
 
+/// The layer along an axis in which the node of this number stands in its block.
+#[inline]
+pub fn layer(node: usize, axis: usize, dimension: usize) -> usize {
+    node / EDGE.pow((dimension - 1 - axis) as u32) % EDGE
+}
+
 /// The walls that reach a node of a block, with their numbers.
 #[derive(Clone)]
 pub struct Reaching<'a, const D: usize> {
@@ -138,8 +144,7 @@ impl<'a, const D: usize> Iterator for Reaching<'a, D> {
         while let Some(entry) = self.walls.get(self.next) {
             let (n, wall) = (self.next, &entry.condition);
             self.next += 1;
-            let layer = self.node / EDGE.pow((D - 1 - wall.axis) as u32) % EDGE;
-            if wall.reached(self.space, self.key).contains(&layer) {
+            if wall.reached(self.space, self.key).contains(&layer(self.node, wall.axis, D)) {
                 return Some((n, wall));
             }
         }

@@ -84,23 +84,11 @@ fn weights<R: Real, S: ShapeFunction<N>, const N: usize>(
         (w[0], dw[0], dw[1]) = (one - w[1], -inverse[0], inverse[0]);
         return (each!(n in N => w[n]), each!(n in N => dw[n]));
     }
-    // R of node n, and R − t of it, which is R(−t): neither is of round-off where it should be zero
-    let ramps = |n: usize| {
-        let t = -axis.r[n];
-        let node = axis.first + R::splat(n as f64);
-        let (low, high) = (R::splat(at.fit.nodes[0] + 1.0), R::splat(at.fit.nodes[1] - 1.0));
-        // at a wall, the slope is that on the side of the material, up to any distance
-        let (low, high) = ((low - node).max(zero).min(one), (node - high).max(zero).min(one));
-        let ((above, rising), (below, falling)) = (S::ramp(t, at.half), S::ramp(-t, at.half));
-        let up = [(t, above), (one, rising)].map(|(v, r)| low.mul_add(v - r, r) * (one - high));
-        let down = [(-t, below), (one, falling)].map(|(v, r)| high.mul_add(v - r, r) * (one - low));
-        (up, down)
-    };
-    let ([b, slope_b], [below, falling]) = ramps(1);
+    let ([b, slope_b], [below, falling]) = ramps::<R, S, N>(axis, at, 1);
     (w[0], dw[0]) = (below * inverse[0], -falling * inverse[0]);
     let (mut c, mut slope_c) = (zero, zero);
     if N == 4 {
-        [c, slope_c] = ramps(2).0;
+        [c, slope_c] = ramps::<R, S, N>(axis, at, 2).0;
         (w[3], dw[3]) = (c * inverse[2], slope_c * inverse[2]);
     }
     w[2] = (b - c) * inverse[1] - w[3];
@@ -108,6 +96,26 @@ fn weights<R: Real, S: ShapeFunction<N>, const N: usize>(
     w[rest] = one - w[0] - w[2] - w[3];
     dw[rest] = zero - dw[0] - dw[2] - dw[3];
     (each!(n in N => w[n]), each!(n in N => dw[n]))
+}
+
+/// R of node n and its slope, and the same of R − t, which is R(−t): neither is of round-off where it
+/// should be zero.
+#[inline(always)]
+fn ramps<R: Real, S: ShapeFunction<N>, const N: usize>(
+    axis: &Axis<R, N>,
+    at: &At<R>,
+    n: usize,
+) -> ([R; 2], [R; 2]) {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let t = -axis.r[n];
+    let node = axis.first + R::splat(n as f64);
+    let (low, high) = (R::splat(at.fit.nodes[0] + 1.0), R::splat(at.fit.nodes[1] - 1.0));
+    // at a wall, the slope is that on the side of the material, up to any distance
+    let (low, high) = ((low - node).max(zero).min(one), (node - high).max(zero).min(one));
+    let ((above, rising), (below, falling)) = (S::ramp(t, at.half), S::ramp(-t, at.half));
+    let up = [low.mul_add(t - above, above), low.mul_add(one - rising, rising)];
+    let down = [high.mul_add(-t - below, below), high.mul_add(one - falling, falling)];
+    ([up[0] * (one - high), up[1] * (one - high)], [down[0] * (one - low), down[1] * (one - low)])
 }
 
 /// Least distance of cubic splines from an upper wall, in units of the spacing: on it, the second

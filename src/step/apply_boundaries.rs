@@ -8,8 +8,9 @@
 //! [`law`](crate::boundary::law).
 
 use super::parts::Method;
-use crate::background::{Background, Held, Nodes, Record, block_nodes};
+use crate::background::{Background, EDGE, Held, Nodes, Record, block_nodes};
 use crate::boundary::law::{constrain, constrain_again};
+use crate::boundary::wall::layer;
 use crate::boundary::{Conditions, Entry, Holding, Reaching, Wall, WallKind};
 use crate::parallel::{Cut, Team};
 use crate::transfer::{TransferKind, pic_flip::pic_share};
@@ -192,13 +193,18 @@ fn for_nodes_at_walls<const D: usize>(
     let with_sums = (records, Cut(&mut sums[..], walls.len()));
     team.for_each_piece(with_sums, GRAIN, |block, ((velocity, increment, force), sums)| {
         let key = &keys[block];
-        if walls.iter().all(|entry| entry.condition.reached(space, key).is_empty()) {
+        // layers of the block, along each axis, that any wall reaches
+        let mut layers = [[false; EDGE]; D];
+        for wall in walls.iter().map(|entry| &entry.condition) {
+            layers[wall.axis][wall.reached(space, key)].fill(true);
+        }
+        if layers.as_flattened().iter().all(|reached| !reached) {
             return;
         }
         let nodes = velocity.iter_mut().zip(increment).zip(force).enumerate();
         for (node, ((velocity, increment), force)) in nodes {
-            let reaching = Reaching::new(walls, space, key, node);
-            if reaching.clone().next().is_some() {
+            if (0..D).any(|d| layers[d][layer(node, d, D)]) {
+                let reaching = Reaching::new(walls, space, key, node);
                 work(reaching, Node { velocity, increment, force }, sums);
             }
         }
